@@ -1,0 +1,23 @@
+//! valet runs robot-assisted dressing trials on a Baxter: a ROS 1 node with a terminal console.
+//!
+//! # The map of the house
+//!
+//! Everything that decides is a **pure core that is stepped**: no clock, no thread, no file, no socket and no random
+//! source of its own. Time and seeds come in as arguments, so one and the same core drives the robot, the simulated
+//! robot, a replay and ten thousand simulated trials. Rooms may use only what stands above them in this list
+//! (`docs/architecture.md` holds the exact edges, `tests/architecture.rs` enforces them):
+//!
+//! - ground floor: [`time`], [`geometry`], [`body`];
+//! - the pure core: `sensing` (force windows, freshness), `vision` (depth image to joints), `modelling` (movement space),
+//!   `planning` (way-points, optimisers), `strategy` (how a path learns), `kinematics` (the arms), `safety` (verdicts),
+//!   `sequencing` (the steps of a trial), `supervisor` (owns them all), `snapshot` and `command` (what may be seen and asked);
+//! - the border: `robot` (ports to limbs and senses, and the guards that refuse);
+//! - adapters, of which none knows another: `ros`, `sim`, `record`;
+//! - the shell: `engine` (threads), `console` (the screen), `headless`, `experiments` and `report`, `config`, [`cli`].
+//!
+//! What this library never does: move anything after a stop without Reset, Enable and Start, each an act of the operator.
+
+pub mod body;
+pub mod cli;
+pub mod geometry;
+pub mod time;
