@@ -17,6 +17,7 @@
 //!
 //! What this library never does: move anything after a stop without Reset, Enable and Start, each an act of the operator.
 
+pub mod assembly;
 pub mod body;
 pub mod cli;
 pub mod geometry;

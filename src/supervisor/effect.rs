@@ -1,0 +1,98 @@
+//! Everything the supervisor may answer: the only door out of the core.
+//!
+//! The engine carries effects out through guarded ports and hands them to the recorder. An effect is a decision, not a
+//! deed: whether a setpoint really left the node is told back as an input.
+
+use crate::assembly::SwitchRequest;
+use crate::body::Side;
+use crate::command::CommandReceipt;
+use crate::kinematics::JointVector;
+use crate::strategy::{IterationSummary, StrategyKind, WaypointChange};
+use serde::{Deserialize, Serialize};
+
+/// The answers to one input, in the order in which they are to be carried out.
+pub type Effects = Vec<Effect>;
+
+/// One decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Effect {
+    /// Send these joint positions to an arm (position mode).
+    Setpoint {
+        /// Which arm.
+        side: Side,
+        /// Radians in the order s0, s1, e0, e1, w0, w1, w2.
+        joints: JointVector,
+    },
+    /// Send nothing more to this arm: it holds where it is once the robot's command time-out has passed.
+    Release {
+        /// Which arm.
+        side: Side,
+    },
+    /// Ask something of the robot's switch.
+    Switch(SwitchRequest),
+    /// Answer to a command.
+    Receipt(CommandReceipt),
+    /// A line for the log.
+    Log {
+        /// How grave.
+        level: Level,
+        /// What happened, in words.
+        text: String,
+    },
+    /// A way-point moved.
+    Waypoint {
+        /// Whose arm (the robot's gripper and the person's arm are on the same side).
+        side: Side,
+        /// What moved and why.
+        change: WaypointChange,
+    },
+    /// An iteration ended.
+    Iteration {
+        /// Whose arm.
+        side: Side,
+        /// Which strategy ran it.
+        strategy: StrategyKind,
+        /// What came of it.
+        summary: IterationSummary,
+        /// Seconds from the first motion of the pass to its end.
+        duration_seconds: f64,
+    },
+    /// The trial ended.
+    TrialEnded {
+        /// How.
+        outcome: Outcome,
+        /// Why, in words.
+        reason: String,
+    },
+}
+
+/// How grave a line of the log is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Level {
+    /// For whoever looks for a cause.
+    Debug,
+    /// What happens in a trial that goes well.
+    Information,
+    /// Look at this.
+    Warning,
+    /// This does not work.
+    Error,
+}
+
+/// How a trial ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Both arms are dressed.
+    Completed,
+    /// The operator gave it up.
+    Aborted,
+    /// The operator stopped it.
+    OperatorStop,
+    /// A safety verdict stopped it.
+    SafetyStop,
+    /// Something broke.
+    Fault,
+}

@@ -1,0 +1,106 @@
+//! Everything that may reach the supervisor, in plain words: the only door into the core.
+//!
+//! Adapters decode messages into these and put them into the engine's inbox. Numbers are passed on as they came, NaN
+//! included: judging them is the core's task.
+
+use crate::assembly::RobotState;
+use crate::body::{BodyPose, PerSide, Side};
+use crate::command::{Command, Origin};
+use crate::geometry::{Pose, Wrench};
+use crate::time::Stamp;
+use serde::{Deserialize, Serialize};
+
+/// One thing that happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Input {
+    /// Time has passed: the engine's 100 Hz beat.
+    Tick,
+    /// An arm's end point and wrench (`/robot/limb/{s}/endpoint_state`).
+    Endpoint(EndpointSample),
+    /// Joint positions (`/robot/joint_states`).
+    Joints(JointSample),
+    /// The robot's state (`/robot/state`).
+    Robot(RobotState),
+    /// The robot's own contact detection (`/robot/limb/{s}/collision_detection_state`).
+    Collision {
+        /// Which arm.
+        side: Side,
+        /// True while the robot pauses for an impact or a squish.
+        active: bool,
+    },
+    /// The person's pose, from whichever source.
+    Body(BodyPose),
+    /// Somebody asks for something.
+    Operator {
+        /// What is asked.
+        command: Command,
+        /// Who asks.
+        origin: Origin,
+    },
+    /// Something about the connection to the robot changed.
+    Link(LinkEvent),
+    /// A setpoint did not leave: a guard refused it. The text says what, value and range.
+    SetpointRefused {
+        /// Which arm.
+        side: Side,
+        /// The guard's words.
+        reason: String,
+    },
+}
+
+/// An arm's end point as the robot reports it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EndpointSample {
+    /// Which of the robot's arms.
+    pub side: Side,
+    /// The message's header stamp.
+    pub stamp: Stamp,
+    /// Pose of the gripper in `base`.
+    pub pose: Pose,
+    /// The wrench exactly as the robot gives it: axes and sign are a setting of the sensing room.
+    pub wrench: Wrench,
+}
+
+/// Joint positions as the robot reports them, sorted to the arms. One message may carry any part of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JointSample {
+    /// The message's header stamp.
+    pub stamp: Stamp,
+    /// Radians in the order s0, s1, e0, e1, w0, w1, w2; `None` where the message did not name the joint.
+    pub positions: PerSide<[Option<f64>; 7]>,
+}
+
+/// What may happen to the connection.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LinkEvent {
+    /// The ROS master does not answer any more.
+    MasterLost,
+    /// The ROS master answers again, and this node is registered with it.
+    MasterBack,
+    /// Another node publishes where only this one may.
+    ForeignPublisher {
+        /// The topic.
+        topic: String,
+        /// The node.
+        node: String,
+    },
+    /// A motion was under way when its handle was dropped, or a worker of the engine died.
+    WorkerLost {
+        /// Which one.
+        name: String,
+    },
+    /// Samples were thrown away because the inbox was full.
+    InboxOverflow {
+        /// How many since the last report.
+        lost: u64,
+    },
+    /// The recorder cannot write any more.
+    RecorderFailed {
+        /// Why.
+        reason: String,
+    },
+    /// The console's process or its terminal is gone.
+    ConsoleLost,
+}
