@@ -20,5 +20,8 @@
 pub mod assembly;
 pub mod body;
 pub mod cli;
+pub mod command;
 pub mod geometry;
+pub mod snapshot;
+pub mod strategy;
 pub mod time;

@@ -7,6 +7,7 @@ use crate::assembly::SwitchRequest;
 use crate::body::Side;
 use crate::command::CommandReceipt;
 use crate::kinematics::JointVector;
+pub use crate::snapshot::{Level, Outcome};
 use crate::strategy::{IterationSummary, StrategyKind, WaypointChange};
 use serde::{Deserialize, Serialize};
 
@@ -65,34 +66,4 @@ pub enum Effect {
         /// Why, in words.
         reason: String,
     },
-}
-
-/// How grave a line of the log is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Level {
-    /// For whoever looks for a cause.
-    Debug,
-    /// What happens in a trial that goes well.
-    Information,
-    /// Look at this.
-    Warning,
-    /// This does not work.
-    Error,
-}
-
-/// How a trial ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Both arms are dressed.
-    Completed,
-    /// The operator gave it up.
-    Aborted,
-    /// The operator stopped it.
-    OperatorStop,
-    /// A safety verdict stopped it.
-    SafetyStop,
-    /// Something broke.
-    Fault,
 }
