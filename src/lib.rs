@@ -22,6 +22,7 @@ pub mod body;
 pub mod cli;
 pub mod command;
 pub mod geometry;
+pub mod kinematics;
 pub mod snapshot;
 pub mod strategy;
 pub mod time;

@@ -1,0 +1,33 @@
+//! The arms: where the grippers are, how to get them somewhere, and what must not touch.
+//!
+//! Works in the robot's `base` frame with metres and radians. Everything here is pure: a motion is planned and checked
+//! before it starts, sampled by the time that has passed, and stopped along the same path. Nothing is sent to a robot.
+
+mod chain;
+mod check;
+mod description;
+mod inverse;
+mod limits;
+mod model;
+mod motion;
+mod path;
+mod plan;
+mod posture;
+mod refusal;
+mod scene;
+mod timing;
+
+pub use chain::JOINTS;
+pub use description::JOINT_SUFFIXES;
+pub use inverse::{InverseError, TOLERANCE};
+pub use limits::{JointLimits, MotionLimits, Workspace};
+pub use model::{ArmModel, BAXTER_URDF, ModelError, RobotModel, Tool};
+pub use motion::{PairMotion, Setpoint};
+pub use plan::{Target, plan_pair, plan_postures};
+pub use posture::dressing_orientation;
+pub use refusal::MotionRefusal;
+pub use scene::{BodyPart, Capsule, Scene};
+pub use timing::TimingError;
+
+/// Positions (radians), speeds or accelerations of an arm's joints in the order s0, s1, e0, e1, w0, w1, w2.
+pub type JointVector = nalgebra::SVector<f64, JOINTS>;

@@ -1,0 +1,290 @@
+//! Inverse kinematics: joint positions that bring the tip to a pose, inside the joint limits.
+//!
+//! Levenberg-Marquardt steps, projected into the box of the joint limits: where a joint would leave its range it is put to
+//! the end of the range and the others take over its share. An attempt that stalls is given up, and the next one starts
+//! from another posture of a table. `docs/motion.md` says how this was chosen and what it was compared with.
+//! No randomness is left when a pose is solved: the same target and seed give the same answer.
+
+use super::JointVector;
+use super::chain::{Chain, Frame, JOINTS, Jacobian};
+use super::limits::JointLimits;
+use super::model::ArmModel;
+use crate::geometry::{Finite, Pose};
+use nalgebra::{Matrix3, Matrix6, Quaternion, UnitQuaternion, Vector3, Vector6};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use thiserror::Error;
+
+/// Each component of the remaining twist is at most this, in metres and radians.
+///
+/// Half of the 1e-5 that the public IK comparisons use (TRAC-IK, 2015), so that a check in another arithmetic agrees.
+pub const TOLERANCE: f64 = 5e-6;
+/// Remaining twist along a planned path: far below what an encoder resolves (3.8e-4 rad), so that paths are smooth.
+pub(super) const PATH_TOLERANCE: f64 = 1e-9;
+/// Steps of one attempt. Those that succeed need about ten; 20 solved the most poses in the least time.
+const STEPS: usize = 20;
+/// Steps without progress before an attempt is given up.
+const STALLS: usize = 4;
+/// Longest step of a joint in radians: beyond it the linear model says nothing.
+const STEP_CAP: f64 = 1.0;
+/// Postures in the table.
+const TABLE_SIZE: usize = 256;
+/// Metres that count as much as one radian when postures are compared with a target: about half the arm's reach.
+const METRES_PER_RADIAN: f64 = 0.4;
+
+/// Why no joint positions were found.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InverseError {
+    /// A number of the target or the seed is NaN or infinite.
+    #[error("the target pose or the joint positions to start from are not finite numbers; nothing was computed")]
+    NotFinite,
+    /// No attempt reached the pose.
+    #[error(
+        "no joint positions inside the limits bring the gripper to the pose; the nearest found is {position_error:.4} m \
+         and {angle_error:.4} rad away"
+    )]
+    NotReached {
+        /// Distance of the nearest pose found, in metres.
+        position_error: f64,
+        /// Angle of the nearest pose found, in radians.
+        angle_error: f64,
+        /// The joint positions of that pose, radians.
+        nearest: JointVector,
+    },
+}
+
+/// Postures to start from, with the pose that each gives.
+#[derive(Debug)]
+pub(super) struct SeedTable {
+    postures: Vec<Posture>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Posture {
+    joints: JointVector,
+    position: Vector3<f64>,
+    orientation: Quaternion<f64>,
+}
+
+impl Posture {
+    fn new(chain: &Chain, joints: JointVector) -> Self {
+        let pose = chain.tip_pose(&joints);
+        Self { joints, position: pose.translation.vector, orientation: *pose.rotation.quaternion() }
+    }
+
+    /// How far a posture is from a target: squared metres, with the turn in them by [`METRES_PER_RADIAN`].
+    fn distance_squared(&self, target: &Pose) -> f64 {
+        // 1 - |q·p| is an eighth of the squared angle for small turns.
+        let turn = 8.0 * (1.0 - self.orientation.dot(target.rotation.quaternion()).abs());
+        (self.position - target.translation.vector).norm_squared() + METRES_PER_RADIAN * METRES_PER_RADIAN * turn
+    }
+}
+
+impl SeedTable {
+    /// Postures drawn uniformly from the joint ranges, always the same ones, and the middle of the ranges.
+    pub(super) fn new(chain: &Chain, limits: &JointLimits) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(0x5eed_7ab1e);
+        let span = limits.upper - limits.lower;
+        let mut postures = vec![Posture::new(chain, limits.middle())];
+        postures.extend((1..TABLE_SIZE).map(|_| {
+            let share = JointVector::from_fn(|_, _| random.random_range(0.0..1.0));
+            Posture::new(chain, limits.lower + share.component_mul(&span))
+        }));
+        Self { postures }
+    }
+}
+
+/// One attempt's end.
+enum Attempt {
+    Reached(JointVector),
+    Stalled(Nearest),
+}
+
+impl ArmModel {
+    /// Joint positions (radians) that bring the tip `{side}_gripper` to a pose in `base`, inside the joint limits and within
+    /// [`TOLERANCE`] on each component of the twist. The seed is tried first where it is close to the target; of several
+    /// solutions the first one found is returned, so a warm seed keeps the posture.
+    ///
+    /// # Errors
+    /// [`InverseError::NotFinite`] for a target or seed that is no number, [`InverseError::NotReached`] with the nearest
+    /// posture found.
+    pub fn inverse(&self, target: &Pose, seed: &JointVector) -> Result<JointVector, InverseError> {
+        if !target.is_finite() || !seed.iter().all(|value| value.is_finite()) {
+            return Err(InverseError::NotFinite);
+        }
+        let frame = Frame::from_pose(target);
+        let seed = seed.zip_zip_map(&self.limits.lower, &self.limits.upper, f64::clamp);
+        let given = Posture::new(&self.chain, seed);
+        let mut costs = [(f64::INFINITY, 0_usize); TABLE_SIZE];
+        for (slot, (index, posture)) in costs.iter_mut().zip(self.seeds.postures.iter().enumerate()) {
+            *slot = (posture.distance_squared(target), index);
+        }
+        let mut nearest = Nearest::default();
+        let mut used_seed = false;
+        for _ in 0..=TABLE_SIZE {
+            let (cost, index) =
+                *costs.iter().min_by(|left, right| left.0.total_cmp(&right.0)).unwrap_or(&(f64::INFINITY, 0));
+            let joints = if !used_seed && given.distance_squared(target) <= cost {
+                used_seed = true;
+                seed
+            } else {
+                if let Some(slot) = costs.get_mut(index) {
+                    slot.0 = f64::INFINITY;
+                }
+                self.seeds.postures.get(index).map_or(seed, |posture| posture.joints)
+            };
+            match self.attempt(&frame, joints, TOLERANCE) {
+                Attempt::Reached(joints) => return Ok(joints),
+                Attempt::Stalled(found) => {
+                    nearest.offer(found.joints, &found.error);
+                }
+            }
+        }
+        Err(nearest.into_error())
+    }
+
+    /// One attempt from a seed that is already close: the inner step of path tracking.
+    pub(super) fn follow(&self, target: &Pose, seed: &JointVector) -> Option<JointVector> {
+        match self.attempt(&Frame::from_pose(target), *seed, PATH_TOLERANCE) {
+            Attempt::Reached(joints) => Some(joints),
+            Attempt::Stalled(_) => None,
+        }
+    }
+
+    fn attempt(&self, target: &Frame, mut joints: JointVector, tolerance: f64) -> Attempt {
+        let mut best = Nearest::default();
+        let mut damping = 1.0_f64;
+        let mut stalls = 0;
+        for _ in 0..=STEPS {
+            let frames = self.chain.frames(&joints);
+            let error = twist_between(&frames.tip, target);
+            if error.amax() <= tolerance {
+                return Attempt::Reached(joints);
+            }
+            let size = error.norm_squared();
+            if best.offer(joints, &error) {
+                damping = (damping * 0.5).max(1e-3);
+            } else {
+                damping *= 4.0;
+                stalls += 1;
+                if stalls >= STALLS {
+                    break;
+                }
+            }
+            let floor = 1e-6 + 0.01 * damping * size.min(1.0);
+            joints = self.projected_step(&frames.jacobian(), &joints, error, floor);
+        }
+        Attempt::Stalled(best)
+    }
+
+    /// A damped least-squares step that ends inside the joint limits.
+    fn projected_step(
+        &self,
+        jacobian: &Jacobian,
+        joints: &JointVector,
+        error: Vector6<f64>,
+        damping: f64,
+    ) -> JointVector {
+        let mut remaining = error;
+        let mut free = [true; JOINTS];
+        let mut next = *joints;
+        for _ in 0..3 {
+            let Some(step) = damped_step(jacobian, &free, &remaining, damping) else { break };
+            let scale = (STEP_CAP / step.amax()).min(1.0);
+            let mut blocked = false;
+            let ranges = self.limits.lower.iter().zip(self.limits.upper.iter());
+            for (index, ((open, change), (lower, upper))) in free.iter_mut().zip(step.iter()).zip(ranges).enumerate() {
+                if !*open {
+                    continue;
+                }
+                let wanted = joints[index] + change * scale;
+                next[index] = wanted.clamp(*lower, *upper);
+                if next[index] != wanted {
+                    *open = false;
+                    blocked = true;
+                    remaining -= jacobian.column(index) * (next[index] - joints[index]);
+                }
+            }
+            if !blocked {
+                break;
+            }
+        }
+        next
+    }
+}
+
+/// The nearest posture so far.
+struct Nearest {
+    size: f64,
+    joints: JointVector,
+    error: Vector6<f64>,
+}
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self { size: f64::INFINITY, joints: JointVector::zeros(), error: Vector6::repeat(f64::INFINITY) }
+    }
+}
+
+impl Nearest {
+    /// Takes a posture that is nearer than the ones before; false for one that is not.
+    fn offer(&mut self, joints: JointVector, error: &Vector6<f64>) -> bool {
+        let size = error.norm_squared();
+        let nearer = size < self.size;
+        if nearer {
+            *self = Self { size, joints, error: *error };
+        }
+        nearer
+    }
+
+    fn into_error(self) -> InverseError {
+        InverseError::NotReached {
+            position_error: self.error.fixed_rows::<3>(0).norm(),
+            angle_error: self.error.fixed_rows::<3>(3).norm(),
+            nearest: self.joints,
+        }
+    }
+}
+
+/// Solves (J Jᵀ + λ 1) y = e over the free joints and returns Jᵀ y; zero for joints that are not free.
+fn damped_step(jacobian: &Jacobian, free: &[bool; JOINTS], error: &Vector6<f64>, damping: f64) -> Option<JointVector> {
+    let mut open = *jacobian;
+    for (mut column, free) in open.column_iter_mut().zip(free) {
+        if !free {
+            column.fill(0.0);
+        }
+    }
+    let mut gram: Matrix6<f64> = open * open.transpose();
+    for index in 0..6 {
+        gram[(index, index)] += damping;
+    }
+    let solved = gram.cholesky()?.solve(error);
+    Some(open.tr_mul(&solved))
+}
+
+/// The twist (metres, radians, axes of `base`) that takes `from` to `to` in unit time.
+pub(super) fn twist_between(from: &Frame, to: &Frame) -> Vector6<f64> {
+    let linear = to.translation - from.translation;
+    let angular = rotation_vector(&(to.rotation * from.rotation.transpose()));
+    Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+}
+
+/// The rotation vector of a rotation matrix, stable for small turns and near a half turn.
+fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    let twice_sine =
+        Vector3::new(rotation.m32 - rotation.m23, rotation.m13 - rotation.m31, rotation.m21 - rotation.m12);
+    let sine = 0.5 * twice_sine.norm();
+    let cosine = 0.5 * (rotation.trace() - 1.0);
+    if sine < 1e-4 && cosine > 0.0 {
+        return twice_sine * 0.5;
+    }
+    if cosine > -0.99 {
+        return twice_sine * (0.5 * sine.atan2(cosine) / sine);
+    }
+    // The antisymmetric part vanishes near a half turn: the quaternion keeps the axis.
+    UnitQuaternion::from_matrix(rotation).scaled_axis()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! The robot as its description gives it: two arms with limits, and the tool at each hand.
+//!
+//! Reads a URDF and nothing else. It never guesses: a description that lacks a joint, a link or a limit is refused.
+
+use super::JointVector;
+use super::chain::{Chain, JOINTS};
+use super::description::Description;
+use super::inverse::SeedTable;
+use super::limits::JointLimits;
+use crate::body::{PerSide, Side};
+use crate::geometry::Pose;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use thiserror::Error;
+
+/// The description that valet carries: the figures of Baxter's SDK 1.2.0 model, primitives only.
+pub const BAXTER_URDF: &str = include_str!("../../urdf/baxter.urdf");
+
+/// What is mounted at a hand: how far the tip `{side}_gripper` lies beyond the hand, along the hand's z axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tool {
+    /// Where the description puts it (0.025 m in the description that valet carries, as in the SDK up to 1.1).
+    #[default]
+    AsDescribed,
+    /// Nothing (`null_gripper` of SDK 1.2): the tip is the hand.
+    Bare,
+    /// The electric gripper with extended fingers (SDK 1.2): 0.1577 m.
+    ElectricExtended,
+    /// The electric gripper with standard fingers: 0.120 m.
+    ElectricStandard,
+    /// Another tool: the tip's distance in metres.
+    Distance(f64),
+}
+
+impl Tool {
+    /// The tip's distance beyond the hand in metres; `None` where the description has to say it.
+    ///
+    /// Sources: `rethink_ee_description`, electric gripper: base 0.025 m, fingers 0.1127 or 0.075 m, tip 0.020 m.
+    #[must_use]
+    pub const fn distance(self) -> Option<f64> {
+        match self {
+            Self::AsDescribed => None,
+            Self::Bare => Some(0.0),
+            Self::ElectricExtended => Some(0.1577),
+            Self::ElectricStandard => Some(0.120),
+            Self::Distance(distance) => Some(distance),
+        }
+    }
+}
+
+/// Why a robot description cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// The text is no URDF.
+    #[error("the robot description cannot be read: {reason}; check the parameter robot_description")]
+    NotReadable {
+        /// The parser's words.
+        reason: String,
+    },
+    /// A link is missing.
+    #[error("the robot description has no link '{link}'; is it the description of a Baxter?")]
+    MissingLink {
+        /// Its name.
+        link: String,
+    },
+    /// A joint is missing, or is not in its place between base and tip.
+    #[error(
+        "the robot description has no joint '{joint}' between base and gripper; is it the description of a Baxter?"
+    )]
+    MissingJoint {
+        /// Its name.
+        joint: String,
+    },
+    /// A joint that moves where valet expects none.
+    #[error("the robot description moves the {side} arm by '{joint}', which valet does not know")]
+    UnknownJoint {
+        /// Which arm.
+        side: Side,
+        /// The joint's name.
+        joint: String,
+    },
+    /// A joint's limits make no range.
+    #[error(
+        "joint '{joint}' of the robot description has no usable limits (from {lower} to {upper} rad, {speed} rad/s)"
+    )]
+    Limits {
+        /// Its name.
+        joint: String,
+        /// Lower end in radians.
+        lower: f64,
+        /// Upper end in radians.
+        upper: f64,
+        /// Speed in radians per second.
+        speed: f64,
+    },
+    /// The tool's length is no sensible number.
+    #[error("the tool at the {side} hand would be {distance} m long; give a number from 0 to 0.5 m")]
+    Tool {
+        /// Which hand.
+        side: Side,
+        /// The distance in metres.
+        distance: f64,
+    },
+}
+
+/// One arm from `base` to the tip of its gripper.
+#[derive(Clone, Debug)]
+pub struct ArmModel {
+    pub(super) side: Side,
+    pub(super) chain: Chain,
+    pub(super) limits: JointLimits,
+    pub(super) seeds: Arc<SeedTable>,
+    joint_names: [String; JOINTS],
+}
+
+impl ArmModel {
+    /// Which of the robot's arms this is.
+    #[must_use]
+    pub const fn side(&self) -> Side {
+        self.side
+    }
+
+    /// The pose of the tip `{side}_gripper` in `base` for joint positions in radians. Total: limits are not asked.
+    #[must_use]
+    pub fn forward(&self, joints: &JointVector) -> Pose {
+        self.chain.tip_pose(joints)
+    }
+
+    /// The limits that the description gives.
+    #[must_use]
+    pub const fn limits(&self) -> &JointLimits {
+        &self.limits
+    }
+
+    /// The joints' names on the wire, such as `left_s0`, in the order of [`JointVector`].
+    #[must_use]
+    pub const fn joint_names(&self) -> &[String; JOINTS] {
+        &self.joint_names
+    }
+}
+
+/// Both arms of a robot, and the shapes that must not touch.
+#[derive(Clone, Debug)]
+pub struct RobotModel {
+    arms: PerSide<ArmModel>,
+    description: Description,
+}
+
+impl RobotModel {
+    /// The Baxter whose description valet carries, with the tip where that description puts it.
+    ///
+    /// # Errors
+    /// None in practice: the description is part of the program and under test.
+    pub fn baxter() -> Result<Self, ModelError> {
+        Self::from_urdf(BAXTER_URDF, PerSide::default())
+    }
+
+    /// A robot from the text of its URDF, with the tool at each hand.
+    ///
+    /// # Errors
+    /// A [`ModelError`] that names what the description lacks.
+    pub fn from_urdf(text: &str, tool: PerSide<Tool>) -> Result<Self, ModelError> {
+        let description = Description::read(text)?;
+        let arm = |side| arm_model(&description, side, *tool.get(side));
+        Ok(Self { arms: PerSide { left: arm(Side::Left)?, right: arm(Side::Right)? }, description })
+    }
+
+    /// One arm.
+    #[must_use]
+    pub const fn arm(&self, side: Side) -> &ArmModel {
+        self.arms.get(side)
+    }
+
+    pub(super) const fn description(&self) -> &Description {
+        &self.description
+    }
+}
+
+fn arm_model(description: &Description, side: Side, tool: Tool) -> Result<ArmModel, ModelError> {
+    let arm = description.arm(side)?;
+    let tip = match tool.distance() {
+        None => arm.tip,
+        Some(distance) if (0.0..=0.5).contains(&distance) => arm.hand * Pose::translation(0.0, 0.0, distance),
+        Some(distance) => return Err(ModelError::Tool { side, distance }),
+    };
+    let chain = Chain::new(arm.origins, &tip);
+    let seeds = Arc::new(SeedTable::new(&chain, &arm.limits));
+    Ok(ArmModel { side, chain, limits: arm.limits, seeds, joint_names: arm.names })
+}

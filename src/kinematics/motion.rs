@@ -1,0 +1,83 @@
+//! A planned motion of both arms: what the joints are to be at each moment, and how to stop on the way.
+//!
+//! A motion is data: sampling it moves nothing.
+
+use super::JointVector;
+use super::chain::Chain;
+use super::path::JointPath;
+use super::timing::{PathLimits, PathTiming};
+use crate::body::{PerSide, Side};
+use crate::geometry::Pose;
+use std::time::Duration;
+
+/// What one arm is to be and do at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setpoint {
+    /// Joint positions in radians.
+    pub joints: JointVector,
+    /// The gripper's pose in `base` for these joints.
+    pub pose: Pose,
+    /// Joint speeds in radians per second.
+    pub velocity: JointVector,
+    /// Joint accelerations in radians per second squared.
+    pub acceleration: JointVector,
+}
+
+/// A motion of both arms in step: they start, slow down and end together.
+#[derive(Clone, Debug)]
+pub struct PairMotion {
+    pub(super) arms: PerSide<ArmMotion>,
+    pub(super) timing: PathTiming,
+    pub(super) limits: PathLimits,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct ArmMotion {
+    pub(super) chain: Chain,
+    pub(super) path: JointPath,
+}
+
+impl PairMotion {
+    /// How long the motion takes.
+    #[must_use]
+    pub fn duration(&self) -> Duration {
+        Duration::try_from_secs_f64(self.timing.seconds()).unwrap_or_default()
+    }
+
+    /// Where both arms are to be when `elapsed` has passed since the start; at and after the end, at rest at the end.
+    #[must_use]
+    pub fn sample(&self, elapsed: Duration) -> PerSide<Setpoint> {
+        let state = self.timing.at(elapsed.as_secs_f64());
+        self.arms.map(|_, arm| {
+            let point = arm.path.at(state.parameter);
+            Setpoint {
+                joints: point.joints,
+                pose: arm.chain.tip_pose(&point.joints),
+                velocity: point.slope * state.speed,
+                acceleration: point.slope * state.acceleration + point.curvature * (state.speed * state.speed),
+            }
+        })
+    }
+
+    /// Which share of the path lies behind the arms when `elapsed` has passed: 0 at its start, 1 at its end.
+    #[must_use]
+    pub fn progress(&self, elapsed: Duration) -> f64 {
+        self.timing.at(elapsed.as_secs_f64()).parameter
+    }
+
+    /// True for an arm that this motion does not move.
+    #[must_use]
+    pub fn rests(&self, side: Side) -> bool {
+        self.arms.get(side).path.knots().len() < 2
+    }
+
+    /// The motion that leads from the state at `elapsed` to rest as soon as acceleration and jerk allow it, on the same
+    /// path and never beyond its end. Its time starts at the halt. A halted motion may be halted again.
+    #[must_use]
+    pub fn halt(&self, elapsed: Duration) -> Self {
+        let state = self.timing.at(elapsed.as_secs_f64());
+        // A profile that the generator refuses cannot be followed: then standing still is the only safe answer.
+        let timing = PathTiming::stop(&state, &self.limits).unwrap_or_else(|_| PathTiming::rest(state.parameter));
+        Self { arms: self.arms.clone(), timing, limits: self.limits }
+    }
+}

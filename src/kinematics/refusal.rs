@@ -1,0 +1,102 @@
+//! Why a motion is refused, in words for the operator: what, where, which value, and what would do.
+
+use super::limits::Workspace;
+use super::timing::TimingError;
+use crate::body::Side;
+use crate::geometry::Point;
+use thiserror::Error;
+
+/// Why a motion was not planned. Nothing has moved.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MotionRefusal {
+    /// A number of a target is NaN or infinite.
+    #[error("the {side} gripper's target is not a finite number; nothing was planned")]
+    NotFinite {
+        /// Which gripper.
+        side: Side,
+    },
+    /// A joint is outside its range or not a number.
+    #[error("{joint} is at {value:.4} rad, outside its range {:.4} to {:.4} rad; move the arm back by hand first", range.0, range.1)]
+    Joint {
+        /// The joint's name on the wire.
+        joint: String,
+        /// Its position in radians.
+        value: f64,
+        /// Its range in radians.
+        range: (f64, f64),
+    },
+    /// A gripper would leave the workspace.
+    #[error("the {side} gripper would be at {axis} = {value:.3} m, outside its workspace {:.3} to {:.3} m", range.0, range.1)]
+    Workspace {
+        /// Which gripper.
+        side: Side,
+        /// x, y or z.
+        axis: char,
+        /// The coordinate in metres.
+        value: f64,
+        /// The range in metres.
+        range: (f64, f64),
+    },
+    /// No joint positions bring the gripper there.
+    #[error(
+        "the {side} gripper cannot reach {place:.3} with this orientation; the nearest it can do is {nearest:.3} (metres in base)"
+    )]
+    OutOfReach {
+        /// Which gripper.
+        side: Side,
+        /// Where on the line.
+        place: Point,
+        /// The nearest place found.
+        nearest: Point,
+    },
+    /// The place can be reached, but not in a straight line from this posture.
+    #[error(
+        "the {side} arm cannot follow the line to {place:.3} from its present posture ({:.0} % of the way is clear); \
+         start from another posture",
+        share * 100.0
+    )]
+    NotTracked {
+        /// Which arm.
+        side: Side,
+        /// Where the way ends.
+        place: Point,
+        /// How far the way is clear, 0 to 1.
+        share: f64,
+    },
+    /// The grippers would come too close to each other or too far apart.
+    #[error("the grippers would be {distance:.3} m apart; allowed are {:.3} to {:.3} m", range.0, range.1)]
+    GripperDistance {
+        /// Their distance in metres.
+        distance: f64,
+        /// The range in metres.
+        range: (f64, f64),
+    },
+    /// Two things would touch or come closer than allowed.
+    #[error("{first} would come within {distance:.3} m of {second}; at least {least:.3} m is kept")]
+    Collision {
+        /// One of them, in the operator's words.
+        first: String,
+        /// The other.
+        second: String,
+        /// Their distance in metres; negative where they would overlap.
+        distance: f64,
+        /// The distance to keep, in metres.
+        least: f64,
+    },
+    /// No speed profile keeps the limits.
+    #[error(transparent)]
+    Timing(#[from] TimingError),
+}
+
+impl MotionRefusal {
+    pub(super) fn workspace(side: Side, axis: usize, point: &Point, workspace: &Workspace) -> Self {
+        let on_axis = |point: &Point| point.coords.get(axis).copied().unwrap_or(f64::NAN);
+        Self::Workspace {
+            side,
+            axis: ['x', 'y', 'z'].get(axis).copied().unwrap_or('?'),
+            value: on_axis(point),
+            range: (on_axis(&workspace.lower), on_axis(&workspace.upper)),
+        }
+    }
+}
