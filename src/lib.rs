@@ -23,6 +23,8 @@ pub mod cli;
 pub mod command;
 pub mod geometry;
 pub mod kinematics;
+pub mod safety;
+pub mod sensing;
 pub mod snapshot;
 pub mod strategy;
 pub mod time;

@@ -1,0 +1,273 @@
+//! The force guard's settings and the caps that no setting raises.
+
+use crate::geometry::Point;
+use crate::safety::Reaction;
+use crate::sensing::{BiasSettings, InertiaCompensation, SensingError, TwoRateSettings};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The force beyond which the robot stops whatever is set: published trials of dressing by hand call more than 35 N a
+/// hazard (Rafiq 2025).
+pub const HARD_CAP_NEWTONS: f64 = 35.0;
+
+/// How near to shoulder and neck the halved tiers hold, in metres: half the breadth of the shoulder's top (our choice).
+const SHOULDER_RADIUS_METRES: f64 = 0.12;
+
+/// Where the gripper is at the person.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Zone {
+    /// Along the arm, or away from the person.
+    #[default]
+    Arm,
+    /// Near a shoulder or the neck: every tier is halved.
+    ShoulderOrNeck,
+}
+
+impl Zone {
+    /// The zone of a place, given the shoulders and the neck as far as they are known, all in `base`.
+    #[must_use]
+    pub fn of(place: &Point, shoulders_and_neck: impl IntoIterator<Item = Point>) -> Self {
+        let near = shoulders_and_neck.into_iter().any(|joint| (joint - place).norm() < SHOULDER_RADIUS_METRES);
+        if near { Self::ShoulderOrNeck } else { Self::Arm }
+    }
+}
+
+/// Where the tiers of the absolute force begin, in newtons.
+///
+/// The defaults are ours and no standard: a normal pull along the forearm is up to 10 N (Kapusta), human-human dressing
+/// trials call 15 to 35 N suspect (Rafiq 2025).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Tiers {
+    /// The operator is told.
+    pub advise: f64,
+    /// The arm slows down.
+    pub slow: f64,
+    /// The arm holds.
+    pub pause: f64,
+    /// Emergency stop, latched.
+    pub stop: f64,
+}
+
+impl Default for Tiers {
+    fn default() -> Self {
+        Self { advise: 8.0, slow: 12.0, pause: 15.0, stop: 25.0 }
+    }
+}
+
+impl Tiers {
+    /// The most that each tier can be set to, in newtons; the stop itself cannot be set beyond the hard cap.
+    pub const MOST: Self = Self { advise: 15.0, slow: 20.0, pause: 25.0, stop: HARD_CAP_NEWTONS };
+
+    /// The tiers in a zone.
+    #[must_use]
+    pub fn at(&self, zone: Zone) -> Self {
+        let share = match zone {
+            Zone::Arm => 1.0,
+            Zone::ShoulderOrNeck => 0.5,
+        };
+        Self {
+            advise: self.advise * share,
+            slow: self.slow * share,
+            pause: self.pause * share,
+            stop: self.stop * share,
+        }
+    }
+
+    const fn rising(&self) -> [(Reaction, f64); 4] {
+        [
+            (Reaction::Advise, self.advise),
+            (Reaction::Slow, self.slow),
+            (Reaction::Hold, self.pause),
+            (Reaction::Stop, self.stop),
+        ]
+    }
+
+    /// The tier that a force reaches, and where that tier begins.
+    #[must_use]
+    pub fn reached(&self, newtons: f64) -> (Reaction, f64) {
+        self.rising().into_iter().rev().find(|(_, limit)| newtons >= *limit).unwrap_or((Reaction::Clear, 0.0))
+    }
+
+    /// Where a tier begins; 0 where nothing is to be said.
+    #[must_use]
+    pub fn limit(&self, tier: Reaction) -> f64 {
+        self.rising().into_iter().find(|(reaction, _)| *reaction == tier).map_or(0.0, |(_, limit)| limit)
+    }
+
+    /// Where the tier above begins; `None` above the stop.
+    #[must_use]
+    pub fn above(&self, tier: Reaction) -> Option<f64> {
+        self.rising().into_iter().find(|(reaction, _)| *reaction > tier).map(|(_, limit)| limit)
+    }
+
+    fn validate(&self) -> Result<(), GuardError> {
+        let most = Self::MOST.rising();
+        let mut below = 0.0;
+        for ((tier, limit), (_, cap)) in self.rising().into_iter().zip(most) {
+            if !limit.is_finite() || limit <= below || limit > cap {
+                return Err(GuardError::Tier { tier, value: limit, below, cap });
+            }
+            below = limit;
+        }
+        Ok(())
+    }
+}
+
+/// How the force of an arm is guarded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuardSettings {
+    /// Tiers of the absolute force.
+    pub tiers: Tiers,
+    /// How a zero is taken.
+    pub bias: BiasSettings,
+    /// The mass that the gripper holds.
+    pub inertia: InertiaCompensation,
+    /// Mass that may be there besides, in kilograms: thresholds of change rise by it times the acceleration.
+    pub unknown_mass_kilograms: f64,
+    /// The detector of a fast change.
+    pub fast_change: TwoRateSettings,
+    /// A force that grows along the way by more than this is a catch, in N/m. A gown caught on a fist measures 60 N/m, a
+    /// good pull after the wrist 26 N/m (Kapusta).
+    pub catch_newtons_per_metre: f64,
+    /// A catch must have grown by at least this, in newtons.
+    pub catch_least_newtons: f64,
+    /// The way over which the growth is taken, in metres.
+    pub catch_window_metres: f64,
+    /// What a catch asks for: `slow` leaves it to the strategy to give way, `hold` to the operator.
+    pub catch_reaction: Reaction,
+    /// Force beyond what is expected that does no work worth counting, in newtons: bias that drifts.
+    pub work_free_newtons: f64,
+    /// Work beyond what dressing needs, in joules, from which the arm slows down. A 60 N/m catch pulled to 10 N is 0.8 J.
+    pub work_joules: f64,
+}
+
+impl Default for GuardSettings {
+    fn default() -> Self {
+        Self {
+            tiers: Tiers::default(),
+            bias: BiasSettings::default(),
+            inertia: InertiaCompensation::default(),
+            unknown_mass_kilograms: 0.3,
+            fast_change: TwoRateSettings { threshold_newtons: 5.0, ..TwoRateSettings::default() },
+            catch_newtons_per_metre: 38.0,
+            catch_least_newtons: 3.0,
+            catch_window_metres: 0.12,
+            catch_reaction: Reaction::Slow,
+            work_free_newtons: 6.0,
+            work_joules: 0.8,
+        }
+    }
+}
+
+/// A setting of the force guard that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum GuardError {
+    /// A tier that is out of order or beyond its cap.
+    #[error("the {tier} tier is {value} N: it must be above {below} N and at most {cap} N")]
+    Tier {
+        /// Which one.
+        tier: Reaction,
+        /// What was given.
+        value: f64,
+        /// The tier below.
+        below: f64,
+        /// The most that can be set.
+        cap: f64,
+    },
+    /// A number that is out of its range.
+    #[error("{key} is {value}: it must be {range}")]
+    Range {
+        /// The setting's key.
+        key: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is allowed, in words.
+        range: &'static str,
+    },
+    /// A catch must at least slow the arm down.
+    #[error("catch_reaction is {0}: it must be slow, hold or stop")]
+    CatchReaction(Reaction),
+    /// A setting of one of its detectors.
+    #[error(transparent)]
+    Sensing(#[from] SensingError),
+}
+
+impl GuardSettings {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// Where a number is not finite, out of its range, or beyond a cap.
+    pub fn validate(&self) -> Result<(), GuardError> {
+        self.tiers.validate()?;
+        self.inertia.validate()?;
+        self.fast_change.validate()?;
+        if self.catch_reaction < Reaction::Slow {
+            return Err(GuardError::CatchReaction(self.catch_reaction));
+        }
+        let within = |key, value: f64, least: f64, most: f64, range| {
+            if (least..=most).contains(&value) { Ok(()) } else { Err(GuardError::Range { key, value, range }) }
+        };
+        within("unknown_mass_kilograms", self.unknown_mass_kilograms, 0.0, 1.0, "from 0 to 1 kg")?;
+        within("catch_newtons_per_metre", self.catch_newtons_per_metre, 10.0, 200.0, "from 10 to 200 N/m")?;
+        within("catch_least_newtons", self.catch_least_newtons, 1.0, 8.0, "from 1 to 8 N")?;
+        within("catch_window_metres", self.catch_window_metres, 0.03, 0.15, "from 0.03 to 0.15 m")?;
+        within("work_free_newtons", self.work_free_newtons, 0.0, 8.0, "from 0 to 8 N")?;
+        within("work_joules", self.work_joules, 0.1, 5.0, "from 0.1 to 5 J")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(change: impl FnOnce(&mut GuardSettings)) -> String {
+        let mut settings = GuardSettings::default();
+        change(&mut settings);
+        settings.validate().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_defaults_can_be_used() {
+        assert_eq!(GuardSettings::default().validate(), Ok(()));
+    }
+
+    #[test]
+    fn tiers_out_of_order_or_beyond_a_cap_are_refused() {
+        assert!(refused(|settings| settings.tiers.stop = 35.1).contains("at most 35 N"));
+        assert!(refused(|settings| settings.tiers.pause = 11.0).contains("above 12 N"));
+        assert!(refused(|settings| settings.tiers.advise = f64::NAN).contains("advise"));
+        assert!(refused(|settings| settings.tiers.pause = 25.5).contains("at most 25 N"));
+    }
+
+    #[test]
+    fn every_number_has_a_range() {
+        assert!(refused(|settings| settings.unknown_mass_kilograms = -1.0).contains("unknown_mass"));
+        assert!(
+            refused(|settings| settings.catch_newtons_per_metre = f64::INFINITY).contains("catch_newtons_per_metre")
+        );
+        assert!(refused(|settings| settings.catch_least_newtons = 9.0).contains("catch_least"));
+        assert!(refused(|settings| settings.catch_window_metres = 0.0).contains("catch_window"));
+        assert!(refused(|settings| settings.work_free_newtons = f64::NAN).contains("work_free"));
+        assert!(refused(|settings| settings.work_joules = 9.0).contains("work_joules"));
+        assert!(refused(|settings| settings.catch_reaction = Reaction::Clear).contains("slow, hold or stop"));
+    }
+
+    #[test]
+    fn a_place_near_shoulder_or_neck_is_in_the_halved_zone() {
+        let shoulder = Point::new(0.0, 0.2, 0.3);
+        assert_eq!(Zone::of(&Point::new(0.0, 0.2, 0.2), [shoulder]), Zone::ShoulderOrNeck);
+        assert_eq!(Zone::of(&Point::new(0.0, 0.2, 0.1), [shoulder]), Zone::Arm);
+        assert_eq!(Zone::of(&shoulder, []), Zone::Arm);
+    }
+
+    #[test]
+    fn settings_survive_the_way_through_a_file_and_unknown_keys_are_refused() {
+        let settings = GuardSettings::default();
+        let text = toml::to_string(&settings).unwrap();
+        assert_eq!(toml::from_str::<GuardSettings>(&text).unwrap(), settings);
+        assert!(toml::from_str::<GuardSettings>("work = 3.0").is_err());
+    }
+}
