@@ -25,6 +25,8 @@ pub mod geometry;
 pub mod kinematics;
 pub mod safety;
 pub mod sensing;
+pub mod sim;
 pub mod snapshot;
 pub mod strategy;
+pub mod supervisor;
 pub mod time;

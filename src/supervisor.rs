@@ -1,0 +1,5 @@
+//! The door into the core: what may reach the supervisor.
+
+mod input;
+
+pub use input::{EndpointSample, Input, JointSample, LinkEvent};
