@@ -110,7 +110,7 @@ impl StopState {
             matches!(self.phase, StopPhase::Released | StopPhase::Disabled | StopPhase::Enabling | StopPhase::Enabled);
         if first || self.phase == StopPhase::Resetting {
             self.phase = StopPhase::Requested;
-            self.cause = cause.to_owned();
+            cause.clone_into(&mut self.cause);
             self.requested_at = Some(now);
             self.confirmed_at = None;
             self.asked_at = None;
@@ -125,11 +125,8 @@ impl StopState {
         if robot.stopped {
             return self.observe_stopped(now, robot);
         }
+        // A confirmed stop stays where it is although somebody else may have reset the robot: that is no act of the operator.
         match self.phase {
-            StopPhase::Confirmed => {
-                // Somebody else reset the robot. The latch does not open by that.
-                self.phase = StopPhase::Disabled;
-            }
             StopPhase::Resetting if !robot.error => self.phase = StopPhase::Disabled,
             StopPhase::Enabling if robot.enabled => self.phase = StopPhase::Enabled,
             StopPhase::Enabled if !robot.enabled => self.phase = StopPhase::Disabled,

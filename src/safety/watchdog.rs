@@ -159,7 +159,7 @@ impl Watchdogs {
         let own = self.own_switching.is_some_and(|asked| now.since(asked) <= OWN_EDGE_WITHIN);
         match (self.enabled.replace(state.enabled), state.enabled) {
             (Some(false), true) if !own => {
-                self.latch(Watch::Enable, "somebody else switched the robot's motors on".into())
+                self.latch(Watch::Enable, "somebody else switched the robot's motors on".into());
             }
             (Some(true), false) if !own && !state.stopped => {
                 self.latch(Watch::Enable, "somebody else switched the robot's motors off".into());

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zero_needs_half_a_second_of_stillness() {
+    fn s_19_a_zero_needs_half_a_second_of_stillness() {
         let mut tracker = still_for(49, |_| Vector::new(1.0, 2.0, 3.0));
         assert_eq!(tracker.tare(Stamp::ZERO), Err(TareError::NotStill { have: 49, need: 50 }));
         tracker.observe(Vector::new(1.0, 2.0, 3.0), true);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_that_is_touched_keeps_its_old_zero() {
+    fn s_19_an_arm_that_is_touched_keeps_its_old_zero() {
         let mut tracker = still_for(50, |_| Vector::zeros());
         let first = tracker.tare(Stamp::ZERO).unwrap();
         for index in 0..50 {

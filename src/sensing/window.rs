@@ -231,18 +231,6 @@ impl ForceWindow {
         self.empty(BreakCause::Reset);
     }
 
-    /// Empties the window when time has passed without a sample: what is left of it would be compared with the future.
-    /// Returns true where that broke it.
-    pub fn expire(&mut self, now: Stamp) -> bool {
-        let Some((last, _)) = self.samples.back() else { return false };
-        let seconds = now.since(*last).as_secs_f64();
-        let late = seconds * self.settings.rate_hertz > 6.0;
-        if late {
-            self.empty(BreakCause::Gap { seconds });
-        }
-        late
-    }
-
     /// The newest reading of a full window.
     #[must_use]
     pub const fn reading(&self) -> Option<WindowReading> {

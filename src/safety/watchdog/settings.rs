@@ -39,7 +39,7 @@ impl Default for WatchSettings {
             joints: Duration::from_millis(100),
             robot_state: Duration::from_millis(100),
             pose: Duration::from_millis(500),
-            pose_hold: Duration::from_millis(2000),
+            pose_hold: Duration::from_secs(2),
             planner: Duration::from_millis(200),
             console: Duration::from_secs(1),
             tick: Duration::from_millis(100),

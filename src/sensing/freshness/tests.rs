@@ -34,7 +34,7 @@ fn the_rate_is_that_of_the_stream_and_falls_to_nothing_when_it_stops() {
     assert!(stream.rate_is_expected(milliseconds(end)));
     let rates: Vec<f64> = (0..=11).map(|step| stream.rate(milliseconds(end + step * 100))).collect();
     assert!(rates.windows(2).all(|pair| pair[1] <= pair[0]), "{rates:?}");
-    assert!(rates[5] < 55.0 && rates[11] == 0.0, "{rates:?}");
+    assert!(rates[5] < 55.0 && rates[11] < 1e-12, "{rates:?}");
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn a_value_holds_up_to_its_deadline() {
 }
 
 #[test]
-fn a_backlog_that_arrives_in_a_burst_is_not_fresh() {
+fn s_33_a_backlog_that_arrives_in_a_burst_is_not_fresh() {
     let mut stream = steady(100);
     // For half a second nothing arrives, then everything at once.
     for index in 100..150 {
@@ -77,7 +77,7 @@ fn a_clock_that_goes_back_leaves_nothing_fresh_until_a_new_message() {
     assert_eq!(stream.age(milliseconds(10)), None);
     stream.observe(milliseconds(20), Some(milliseconds(20)));
     assert!(stream.is_fresh(milliseconds(20)));
-    assert_eq!(stream.rate(milliseconds(20)), 0.0);
+    assert!(stream.rate(milliseconds(20)) < 1e-12);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn gaps_and_jitter_are_those_of_the_last_second() {
     assert!((stream.gap(milliseconds(1040)) - 0.05).abs() < 1e-9);
     assert!(stream.jitter(milliseconds(1040)) > 0.003);
     assert!((stream.gap(milliseconds(1240)) - 0.2).abs() < 1e-9, "an open gap counts");
-    assert_eq!(stream.jitter(milliseconds(3000)), 0.0);
+    assert!(stream.jitter(milliseconds(3000)) < 1e-12);
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn stamps_that_go_back_are_counted() {
 
 proptest! {
     #[test]
-    fn no_stream_is_fresh_after_its_deadline(arrivals in proptest::collection::vec(0_u64..100_000, 1..300), wait in 61_u64..10_000) {
+    fn s_33_no_stream_is_fresh_after_its_deadline(arrivals in proptest::collection::vec(0_u64..100_000, 1..300), wait in 61_u64..10_000) {
         let mut stream = force();
         for arrival in &arrivals {
             stream.observe(milliseconds(*arrival), None);

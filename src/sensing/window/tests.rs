@@ -91,7 +91,7 @@ fn full() -> ForceWindow {
 }
 
 #[test]
-fn a_missing_sample_empties_the_window_and_does_not_shorten_it() {
+fn s_20_a_missing_sample_empties_the_window_and_does_not_shorten_it() {
     let mut window = full();
     assert_eq!(window.push(stamp(17), Vector::new(9.0, 0.0, 0.0)), None);
     assert_eq!(window.filled(), 0);
@@ -134,21 +134,13 @@ fn an_older_sample_and_a_second_force_for_the_same_moment_break_it() {
 }
 
 #[test]
-fn a_number_that_is_not_finite_leaves_nothing_behind() {
+fn s_20_a_number_that_is_not_finite_leaves_nothing_behind() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut window = full();
         assert_eq!(window.push(stamp(16), Vector::new(0.0, bad, 0.0)), None);
         assert_eq!((window.filled(), window.last_break()), (0, Some(BreakCause::NotFinite)));
         assert!(window.detect().is_none());
     }
-}
-
-#[test]
-fn silence_empties_the_window_at_its_end() {
-    let mut window = full();
-    assert!(!window.expire(stamp(20)));
-    assert!(window.expire(stamp(22)));
-    assert_eq!(window.reading(), None);
 }
 
 #[test]
