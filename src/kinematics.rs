@@ -5,9 +5,11 @@
 
 mod chain;
 mod check;
+mod collision;
 mod description;
 mod inverse;
 mod limits;
+mod line;
 mod model;
 mod motion;
 mod path;
@@ -18,15 +20,16 @@ mod scene;
 mod timing;
 
 pub use chain::JOINTS;
+pub use collision::Proximity;
 pub use description::JOINT_SUFFIXES;
 pub use inverse::{InverseError, TOLERANCE};
-pub use limits::{JointLimits, MotionLimits, Workspace};
+pub use limits::{JOINT_TOLERANCE, JointLimits, MotionLimits, Workspace};
 pub use model::{ArmModel, BAXTER_URDF, ModelError, RobotModel, Tool};
 pub use motion::{PairMotion, Setpoint};
 pub use plan::{Target, plan_pair, plan_postures};
-pub use posture::dressing_orientation;
+pub use posture::{dressing_orientation, start_postures, waiting_place};
 pub use refusal::MotionRefusal;
-pub use scene::{BodyPart, Capsule, Scene};
+pub use scene::{BodyBuild, BodyPart, Capsule, Scene};
 pub use timing::TimingError;
 
 /// Positions (radians), speeds or accelerations of an arm's joints in the order s0, s1, e0, e1, w0, w1, w2.

@@ -111,7 +111,7 @@ impl ArmFrames {
 }
 
 /// The rotation that takes z to `axis`; for the axis that is opposite to z a half turn about x.
-fn rotation_from_z(axis: &Vector3<f64>) -> UnitQuaternion<f64> {
+pub(super) fn rotation_from_z(axis: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(&Vector3::z(), axis)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
 }

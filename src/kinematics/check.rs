@@ -5,34 +5,73 @@ use super::limits::MotionLimits;
 use super::model::RobotModel;
 use super::refusal::MotionRefusal;
 use super::scene::Scene;
-use crate::body::{PerSide, Side};
-use crate::geometry::Point;
+use crate::body::PerSide;
 
 /// Numerical slack in metres for "no deeper than at the start".
 const SLACK: f64 = 1e-4;
 
-/// Checks each knot of both arms. An arm with a single knot stays.
+/// Checks each knot of both arms. An arm with fewer knots stays at its last one.
 pub(super) fn check_path(
     model: &RobotModel,
-    _scene: &Scene,
+    scene: &Scene,
     knots: &PerSide<Vec<JointVector>>,
     limits: &MotionLimits,
 ) -> Result<(), MotionRefusal> {
-    let count = knots.left.len().max(knots.right.len());
-    let mut at_start = None;
-    for index in 0..count {
-        let tips = PerSide::from_fn(|side: Side| {
+    let at = |index: usize| {
+        PerSide::from_fn(|side| {
             let way = knots.get(side);
-            let joints = way.get(index).or(way.last()).copied().unwrap_or_else(JointVector::zeros);
-            Point::from(model.arm(side).forward(&joints).translation.vector)
-        });
-        let distance = (tips.left - tips.right).norm();
-        let first = *at_start.get_or_insert(distance);
-        let range = (limits.minimum_gripper_distance, limits.maximum_gripper_distance);
-        let allowed = (range.0.min(first) - SLACK, range.1.max(first) + SLACK);
-        if !(allowed.0..=allowed.1).contains(&distance) {
-            return Err(MotionRefusal::GripperDistance { distance, range });
-        }
+            way.get(index).or(way.last()).copied().unwrap_or_else(JointVector::zeros)
+        })
+    };
+    let rules = Rules::new(model, scene, limits, &at(0));
+    (0..knots.left.len().max(knots.right.len())).try_for_each(|index| rules.check(&at(index)).map(|_| ()))
+}
+
+/// Checks one configuration, with no allowance for where it came from, and returns the metres that are left beyond those to keep.
+pub(super) fn room_at(
+    model: &RobotModel,
+    scene: &Scene,
+    joints: &PerSide<JointVector>,
+    limits: &MotionLimits,
+) -> Result<f64, MotionRefusal> {
+    let grippers = (limits.minimum_gripper_distance, limits.maximum_gripper_distance);
+    Rules { model, scene, grippers, allowed: grippers, least_room: 0.0 }.check(joints)
+}
+
+/// The rules between the arms and their surroundings, with the state at the start of a motion.
+struct Rules<'a> {
+    model: &'a RobotModel,
+    scene: &'a Scene,
+    grippers: (f64, f64),
+    allowed: (f64, f64),
+    least_room: f64,
+}
+
+impl<'a> Rules<'a> {
+    fn new(model: &'a RobotModel, scene: &'a Scene, limits: &MotionLimits, start: &PerSide<JointVector>) -> Self {
+        let grippers = (limits.minimum_gripper_distance, limits.maximum_gripper_distance);
+        let distance = gripper_distance(model, start);
+        // Where a rule is already broken, the motion may lead out of it but no deeper.
+        let allowed = (grippers.0.min(distance) - SLACK, grippers.1.max(distance) + SLACK);
+        let least_room = model.tightest_pair(start, scene).room.min(0.0) - SLACK;
+        Self { model, scene, grippers, allowed, least_room }
     }
-    Ok(())
+
+    fn check(&self, joints: &PerSide<JointVector>) -> Result<f64, MotionRefusal> {
+        let distance = gripper_distance(self.model, joints);
+        if !(self.allowed.0..=self.allowed.1).contains(&distance) {
+            return Err(MotionRefusal::GripperDistance { distance, range: self.grippers });
+        }
+        let tightest = self.model.tightest_pair(joints, self.scene);
+        if tightest.room < self.least_room {
+            return Err(self.model.describe(&tightest, self.scene).into());
+        }
+        Ok(tightest.room)
+    }
+}
+
+/// Distance of the grippers' tips in metres.
+pub(super) fn gripper_distance(model: &RobotModel, joints: &PerSide<JointVector>) -> f64 {
+    let tips = joints.map(|side, joints| model.arm(side).forward(joints).translation.vector);
+    (tips.left - tips.right).norm()
 }

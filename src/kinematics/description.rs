@@ -3,7 +3,7 @@
 //! The only user of `urdf-rs`. Links and joints are looked up apart, because fixed joints share names with links.
 
 use super::JointVector;
-use super::chain::JOINTS;
+use super::chain::{JOINTS, rotation_from_z};
 use super::limits::JointLimits;
 use super::model::ModelError;
 use crate::body::Side;
@@ -90,6 +90,21 @@ impl Description {
             current = &joint.parent.link;
         }
         Err(ModelError::MissingLink { link: BASE.into() })
+    }
+
+    /// What a link is fixed to: the robot's body (`None`) or a moving link of an arm (0 to 6), and its pose in the frame that
+    /// the arm's chain has for that link. `None` for links that hang from other joints, such as the head or a finger.
+    pub(super) fn holder(&self, link: &str) -> Result<Option<(Option<(Side, usize)>, Pose)>, ModelError> {
+        let chain = self.chain_to(link)?;
+        let fixed = chain.iter().rev().take_while(|joint| !is_moving(joint));
+        let offset = fixed.fold(Pose::identity(), |pose, joint| pose_of(&joint.origin) * pose);
+        let Some(joint) = chain.iter().rev().find(|joint| is_moving(joint)) else { return Ok(Some((None, offset))) };
+        let arm_link = Side::BOTH.into_iter().find_map(|side| {
+            let index = JOINT_SUFFIXES.iter().position(|suffix| joint.name == format!("{side}_{suffix}"))?;
+            Some((side, index))
+        });
+        let unfolded = rotation_from_z(&Vector::from(joint.axis.xyz.0)).inverse();
+        Ok(arm_link.map(|arm_link| (Some(arm_link), unfolded * offset)))
     }
 
     /// From the last moving link to the hand.

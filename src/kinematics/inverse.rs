@@ -29,6 +29,8 @@ const STALLS: usize = 4;
 const STEP_CAP: f64 = 1.0;
 /// Postures in the table.
 const TABLE_SIZE: usize = 256;
+/// Two solutions are different where a joint differs by more than this, in radians.
+const DIFFERENT: f64 = 0.2;
 /// Metres that count as much as one radian when postures are compared with a target: about half the arm's reach.
 const METRES_PER_RADIAN: f64 = 0.4;
 
@@ -142,6 +144,33 @@ impl ArmModel {
             }
         }
         Err(nearest.into_error())
+    }
+
+    /// Up to `count` clearly different joint positions for a pose, from many seeds: the choice that look-ahead starts with.
+    pub(super) fn solutions(&self, target: &Pose, count: usize) -> Result<Vec<JointVector>, InverseError> {
+        let first = self.inverse(target, &self.limits.middle())?;
+        let mut found = vec![self.follow(target, &first).unwrap_or(first)];
+        let frame = Frame::from_pose(target);
+        let mut seeds: Vec<_> = self.seeds.postures.iter().collect();
+        seeds.sort_by(|one, other| one.distance_squared(target).total_cmp(&other.distance_squared(target)));
+        for seed in seeds {
+            if found.len() >= count {
+                break;
+            }
+            if let Attempt::Reached(joints) = self.attempt(&frame, seed.joints, PATH_TOLERANCE)
+                && found.iter().all(|other| (joints - other).amax() > DIFFERENT)
+            {
+                found.push(joints);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The part of a joint motion that leaves the tip where it is.
+    pub(super) fn free_motion(&self, joints: &JointVector, wanted: &JointVector) -> JointVector {
+        let jacobian = self.chain.frames(joints).jacobian();
+        let moved = jacobian * wanted;
+        damped_step(&jacobian, &[true; JOINTS], &moved, 1e-4).map_or_else(JointVector::zeros, |back| wanted - back)
     }
 
     /// One attempt from a seed that is already close: the inner step of path tracking.

@@ -3,10 +3,12 @@
 //! Reads a URDF and nothing else. It never guesses: a description that lacks a joint, a link or a limit is refused.
 
 use super::JointVector;
-use super::chain::{Chain, JOINTS};
+use super::chain::{Chain, JOINTS, rotation_from_z};
+use super::collision::{CollisionModel, Proximity, Tightest};
 use super::description::Description;
 use super::inverse::SeedTable;
 use super::limits::JointLimits;
+use super::scene::Scene;
 use crate::body::{PerSide, Side};
 use crate::geometry::Pose;
 use serde::{Deserialize, Serialize};
@@ -145,7 +147,7 @@ impl ArmModel {
 #[derive(Clone, Debug)]
 pub struct RobotModel {
     arms: PerSide<ArmModel>,
-    description: Description,
+    collision: CollisionModel,
 }
 
 impl RobotModel {
@@ -164,7 +166,12 @@ impl RobotModel {
     pub fn from_urdf(text: &str, tool: PerSide<Tool>) -> Result<Self, ModelError> {
         let description = Description::read(text)?;
         let arm = |side| arm_model(&description, side, *tool.get(side));
-        Ok(Self { arms: PerSide { left: arm(Side::Left)?, right: arm(Side::Right)? }, description })
+        let (left, left_hand) = arm(Side::Left)?;
+        let (right, right_hand) = arm(Side::Right)?;
+        let hands = PerSide { left: left_hand, right: right_hand };
+        let chains = PerSide { left: &left.chain, right: &right.chain };
+        let collision = CollisionModel::new(&description, &hands, &chains)?;
+        Ok(Self { arms: PerSide { left, right }, collision })
     }
 
     /// One arm.
@@ -173,19 +180,37 @@ impl RobotModel {
         self.arms.get(side)
     }
 
-    pub(super) const fn description(&self) -> &Description {
-        &self.description
+    /// The two things with the least room between them: parts of the arms against each other, the robot's body and the
+    /// person. Joint positions in radians; a position that is not a number counts as contact.
+    #[must_use]
+    pub fn tightest(&self, joints: &PerSide<JointVector>, scene: &Scene) -> Proximity {
+        self.collision.describe(&self.tightest_pair(joints, scene), scene)
+    }
+
+    pub(super) fn tightest_pair(&self, joints: &PerSide<JointVector>, scene: &Scene) -> Tightest {
+        self.collision.tightest(&joints.map(|side, joints| self.arm(side).chain.frames(joints)), scene)
+    }
+
+    pub(super) fn describe(&self, pair: &Tightest, scene: &Scene) -> Proximity {
+        self.collision.describe(pair, scene)
     }
 }
 
-fn arm_model(description: &Description, side: Side, tool: Tool) -> Result<ArmModel, ModelError> {
+/// An arm, and its hand and tip in the frame of its last link.
+fn arm_model(description: &Description, side: Side, tool: Tool) -> Result<(ArmModel, (Pose, Pose)), ModelError> {
     let arm = description.arm(side)?;
     let tip = match tool.distance() {
         None => arm.tip,
         Some(distance) if (0.0..=0.5).contains(&distance) => arm.hand * Pose::translation(0.0, 0.0, distance),
         Some(distance) => return Err(ModelError::Tool { side, distance }),
     };
+    let (_, last_axis) = arm.origins[JOINTS - 1];
+    let unfolded = rotation_from_z(&last_axis).inverse();
+    let hand_and_tip = (unfolded * arm.hand, unfolded * tip);
     let chain = Chain::new(arm.origins, &tip);
     let seeds = Arc::new(SeedTable::new(&chain, &arm.limits));
-    Ok(ArmModel { side, chain, limits: arm.limits, seeds, joint_names: arm.names })
+    Ok((ArmModel { side, chain, limits: arm.limits, seeds, joint_names: arm.names }, hand_and_tip))
 }
+
+#[cfg(test)]
+mod tests;

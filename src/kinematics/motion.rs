@@ -81,3 +81,6 @@ impl PairMotion {
         Self { arms: self.arms.clone(), timing, limits: self.limits }
     }
 }
+
+#[cfg(test)]
+mod tests;

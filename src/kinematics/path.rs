@@ -1,6 +1,6 @@
 //! A way through joint space, by a parameter from 0 (start) to 1 (end) that both arms share.
 //!
-//! A natural cubic spline through evenly spaced knots: positions, speeds and accelerations are continuous. Knows no time.
+//! A cubic spline through evenly spaced knots: positions, speeds and accelerations are continuous. Knows no time.
 
 use super::JointVector;
 
@@ -23,7 +23,7 @@ pub(super) struct PathPoint {
 impl JointPath {
     /// A way through knots that are evenly spaced in the parameter. No knot at all would be no way: `None`.
     pub(super) fn through(knots: Vec<JointVector>) -> Option<Self> {
-        let curvature = natural_curvature(&knots);
+        let curvature = spline_curvature(&knots);
         (!knots.is_empty()).then_some(Self { knots, curvature })
     }
 
@@ -61,23 +61,44 @@ impl JointPath {
     }
 }
 
-/// Second derivatives of the natural cubic spline (zero at both ends) through evenly spaced knots over 0 to 1:
-/// the tridiagonal system 1-4-1, solved forwards and back (Thomas).
-fn natural_curvature(knots: &[JointVector]) -> Vec<JointVector> {
+/// Second derivatives of the cubic spline through evenly spaced knots over 0 to 1: the tridiagonal system 1-4-1 with the ends
+/// known, solved forwards and back (Thomas).
+fn spline_curvature(knots: &[JointVector]) -> Vec<JointVector> {
     let spans = knots.len().saturating_sub(1) as f64;
-    let mut forward: Vec<(f64, JointVector)> = vec![(0.0, JointVector::zeros())];
-    for window in knots.windows(3) {
-        let [before, here, after] = window else { continue };
-        let load = (after - here * 2.0 + before) * (6.0 * spans * spans);
-        let (ratio, value) = forward.last().copied().unwrap_or((0.0, JointVector::zeros()));
+    let differences: Vec<JointVector> = knots
+        .windows(3)
+        .map(|window| match window {
+            [before, here, after] => (after - here * 2.0 + before) * (spans * spans),
+            _ => JointVector::zeros(),
+        })
+        .collect();
+    let (first, last) = end_curvature(&differences);
+    let mut forward = vec![(0.0, first)];
+    for difference in &differences {
+        let (ratio, value) = forward.last().copied().unwrap_or((0.0, first));
         let pivot = 4.0 - ratio;
-        forward.push((1.0 / pivot, (load - value) / pivot));
+        forward.push((1.0 / pivot, (difference * 6.0 - value) / pivot));
     }
     let mut curvature = vec![JointVector::zeros(); knots.len()];
-    let mut next = JointVector::zeros();
-    for (slot, (ratio, value)) in curvature.iter_mut().zip(&forward).skip(1).rev() {
-        next = value - next * *ratio;
-        *slot = next;
+    let mut next = last;
+    for (index, slot) in curvature.iter_mut().enumerate().rev() {
+        *slot = match forward.get(index) {
+            Some((ratio, value)) => value - next * *ratio,
+            None => last,
+        };
+        next = *slot;
     }
     curvature
 }
+
+/// The curvature at both ends, continued from the differences next to them: a spline that is forced to be straight at its ends
+/// would leave a curved way by more than the rest of it. Too few knots make a natural spline: straight ends.
+fn end_curvature(differences: &[JointVector]) -> (JointVector, JointVector) {
+    match (differences, differences) {
+        ([first, second, ..], [.., before, last]) => (first * 2.0 - second, last * 2.0 - before),
+        _ => (JointVector::zeros(), JointVector::zeros()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -4,8 +4,8 @@
 //! the grippers, and everything that must not touch. What cannot be done is refused with what and why.
 
 use super::JointVector;
-use super::inverse::InverseError;
-use super::limits::MotionLimits;
+use super::limits::{JOINT_TOLERANCE, MotionLimits};
+use super::line::{KNOT_ANGLE, Line, MOST_KNOTS, shares};
 use super::model::{ArmModel, RobotModel};
 use super::motion::{ArmMotion, PairMotion};
 use super::path::JointPath;
@@ -16,14 +16,6 @@ use crate::body::{PerSide, Side};
 use crate::geometry::{Finite, Point, Pose};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
-/// Distance of two knots of a path in metres: halfway between, the spline is within a few micrometres of the line.
-const KNOT_SPACING: f64 = 0.002;
-/// Distance of two knots in radians for turns, and for joint moves.
-const KNOT_ANGLE: f64 = 0.02;
-/// Most knots of a path: 3 m at the spacing above, more than an arm can reach.
-const MOST_KNOTS: f64 = 1500.0;
-/// A joint that moves further than this (radians) from knot to knot jumps to another posture.
-const JUMP: f64 = 0.1;
 /// How far outside its range (radians) a measured joint may be: encoder steps and the robot's own control error (0.5°).
 const START_TOLERANCE: f64 = 0.009;
 
@@ -63,10 +55,10 @@ pub fn plan_pair(
         left: line(model.arm(Side::Left), &start.left, targets.left, limits)?,
         right: line(model.arm(Side::Right), &start.right, targets.right, limits)?,
     };
-    let knots = Side::BOTH.into_iter().filter_map(|side| lines.get(side).as_ref().map(Line::knots)).fold(1.0, f64::max);
+    let spans = Side::BOTH.into_iter().filter_map(|side| lines.get(side).as_ref().map(Line::spans)).fold(1.0, f64::max);
     let track = |side: Side| match lines.get(side) {
         None => Ok(vec![*start.get(side)]),
-        Some(line) => follow_line(model.arm(side), line, start.get(side), knots),
+        Some(line) => model.arm(side).follow_line(line, start.get(side), spans),
     };
     let paths = PerSide { left: track(Side::Left)?, right: track(Side::Right)? };
     let extent = PerSide::from_fn(|side| {
@@ -103,26 +95,6 @@ pub fn plan_postures(
     });
     let extent = PerSide::from_fn(|side| swept(model.arm(side), paths.get(side)));
     finish(model, scene, paths, extent, limits)
-}
-
-/// A straight line of the tip with an even turn.
-struct Line {
-    from: Pose,
-    to: Pose,
-    length: f64,
-    angle: f64,
-}
-
-impl Line {
-    fn knots(&self) -> f64 {
-        (self.length / KNOT_SPACING).max(self.angle / KNOT_ANGLE).ceil().clamp(2.0, MOST_KNOTS)
-    }
-
-    fn at(&self, share: f64) -> Pose {
-        let position = self.from.translation.vector.lerp(&self.to.translation.vector, share);
-        let turn = self.from.rotation.rotation_to(&self.to.rotation).scaled_axis() * share;
-        Isometry3::from_parts(Translation3::from(position), UnitQuaternion::from_scaled_axis(turn) * self.from.rotation)
-    }
 }
 
 /// The fastest that a gripper moves per unit of the path's parameter.
@@ -170,55 +142,7 @@ fn line(
     if let Some(axis) = limits.workspace.breach(&target.position) {
         return Err(MotionRefusal::workspace(arm.side(), axis, &target.position, &limits.workspace));
     }
-    let length = (to.translation.vector - from.translation.vector).norm();
-    Ok(Some(Line { from, to, length, angle: from.rotation.angle_to(&to.rotation) }))
-}
-
-/// The shares 0 to 1 of a path in so many spans.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number from 1 to 1500")]
-fn shares(spans: f64) -> impl Iterator<Item = f64> {
-    (0..=spans as usize).map(move |index| index as f64 / spans)
-}
-
-fn follow_line(
-    arm: &ArmModel,
-    line: &Line,
-    start: &JointVector,
-    spans: f64,
-) -> Result<Vec<JointVector>, MotionRefusal> {
-    let mut knots: Vec<JointVector> = Vec::new();
-    for share in shares(spans) {
-        let guess = match knots.as_slice() {
-            [] => *start,
-            [only] => *only,
-            [.., before, last] => extrapolate(arm, before, last),
-        };
-        let pose = line.at(share);
-        let next = arm.follow(&pose, &guess).ok_or_else(|| not_tracked(arm, line, share, start))?;
-        if knots.last().is_some_and(|last| (next - last).amax() > JUMP) {
-            return Err(not_tracked(arm, line, share, start));
-        }
-        knots.push(next);
-    }
-    Ok(knots)
-}
-
-/// The next knot if the joints go on as before, kept inside the limits: a better seed than the last knot.
-fn extrapolate(arm: &ArmModel, before: &JointVector, last: &JointVector) -> JointVector {
-    (last * 2.0 - before).zip_zip_map(&arm.limits().lower, &arm.limits().upper, f64::clamp)
-}
-
-/// Says whether the pose is out of reach at all, or only from this posture.
-fn not_tracked(arm: &ArmModel, line: &Line, share: f64, start: &JointVector) -> MotionRefusal {
-    let place = Point::from(line.at(share).translation.vector);
-    match arm.inverse(&line.at(share), start) {
-        Err(InverseError::NotReached { nearest, .. }) => MotionRefusal::OutOfReach {
-            side: arm.side(),
-            place,
-            nearest: Point::from(arm.forward(&nearest).translation.vector),
-        },
-        _ => MotionRefusal::NotTracked { side: arm.side(), place, share },
-    }
+    Ok(Some(Line::new(from, to)).filter(|line| !line.is_still()))
 }
 
 fn swept(arm: &ArmModel, knots: &[JointVector]) -> Extent {
@@ -241,6 +165,9 @@ fn finish(
     let path = |side: Side, knots: Vec<JointVector>| JointPath::through(knots).ok_or(MotionRefusal::NotFinite { side });
     let PerSide { left, right } = knots;
     let paths = PerSide { left: path(Side::Left, left)?, right: path(Side::Right, right)? };
+    for (side, path) in paths.iter() {
+        check_between_knots(model.arm(side), path)?;
+    }
     let bounds = path_limits(&paths, &extent, limits);
     let timing = PathTiming::rest_to_rest(&bounds, limits.minimum_duration.as_secs_f64())?;
     let arms = PerSide {
@@ -248,6 +175,12 @@ fn finish(
         right: ArmMotion { chain: model.arm(Side::Right).chain.clone(), path: paths.right },
     };
     Ok(PairMotion { arms, timing, limits: bounds })
+}
+
+/// Where a joint runs against its limit the way bends there, and its spline may swing beyond: such a way is refused.
+fn check_between_knots(arm: &ArmModel, path: &JointPath) -> Result<(), MotionRefusal> {
+    let spans = path.knots().len().saturating_sub(1) as f64;
+    shares(4.0 * spans).try_for_each(|share| check_posture(arm, &path.at(share).joints, JOINT_TOLERANCE))
 }
 
 /// The highest speed, acceleration and jerk of the shared parameter with which no gripper and no joint breaks a limit.
@@ -277,3 +210,6 @@ fn path_limits(paths: &PerSide<JointPath>, extent: &PerSide<Extent>, limits: &Mo
     }
     bounds
 }
+
+#[cfg(test)]
+mod tests;

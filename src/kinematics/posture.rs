@@ -4,24 +4,176 @@
 //! So several are tried, and the whole way is followed from each before one is chosen.
 
 use super::JointVector;
-use super::inverse::TOLERANCE;
+use super::check::room_at;
 use super::limits::MotionLimits;
+use super::line::{Line, shares};
 use super::model::{ArmModel, RobotModel};
-use super::plan::{Target, plan_pair};
 use super::refusal::MotionRefusal;
 use super::scene::Scene;
 use crate::body::{PerSide, Side};
-use crate::geometry::{Point, Pose};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use crate::geometry::{Finite, Point, Pose};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// How far the grippers point below the horizontal: of the lines in front of the robot that are possible at all, the largest
 /// share is so at 30° (99 %; 95 % at 0°, 91 % at 60°, 58 % at 90°).
 const PITCH: f64 = std::f64::consts::FRAC_PI_6;
+/// From a person's shoulder to where the other gripper waits behind it, in `base`, metres: behind and below, because the robot's
+/// forearms (radius 0.06 m) lie behind their grippers and have to pass each other when the leading gripper is at the shoulder.
+const WAITING_OFFSET: Vector3<f64> = Vector3::new(-0.20, 0.0, -0.28);
+/// Postures that are tried for the start of each arm's way.
+const CANDIDATES: usize = 16;
+/// Pairs of postures that are compared, those with the most room in their joints first.
+const PAIRS: usize = 24;
+/// Metres between the arms that are worth as much as a joint in the middle of its range.
+const COMFORTABLE: f64 = 0.10;
+/// Of a way's knots (2 mm apart) every so-manieth is checked while pairs are compared; a plan checks all of them.
+const STRIDE: usize = 4;
 
 /// The grippers' orientation in `base` while a person is dressed: they point forward (x) and 30° down, and their own x axis
-/// (the camera's side of the hand) points up.
+/// (the camera's side of the hand) points down. Of four quarter turns about the gripper's own axis this one leaves the most room to
+/// the joint limits on dressing paths.
 #[must_use]
 pub fn dressing_orientation() -> UnitQuaternion<f64> {
-    UnitQuaternion::from_axis_angle(&nalgebra::Vector3::y_axis(), std::f64::consts::FRAC_PI_2 + PITCH)
-        * UnitQuaternion::from_axis_angle(&nalgebra::Vector3::z_axis(), std::f64::consts::PI)
+    UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2 + PITCH)
 }
+
+/// Where the gripper that does not lead waits, for a person's shoulder in `base`, metres.
+#[must_use]
+pub fn waiting_place(shoulder: &Point) -> Point {
+    shoulder + WAITING_OFFSET
+}
+
+/// Start postures (radians) of both arms from which they can go through all stages: straight lines in step from one pair of
+/// points (`base`, metres) to the next, each gripper at one orientation. A gripper whose point stays the same rests.
+///
+/// Each arm's candidates are followed through all stages and ranked by the room they leave to the joint limits and to the joint
+/// speeds; of the best pairs that keep clear of everything and keep the grippers' distance throughout, the one is taken that leaves
+/// the most room of either kind.
+///
+/// # Errors
+/// A [`MotionRefusal`]: of a candidate's way where no posture of an arm can follow it, or of the best pair where none is clear.
+pub fn start_postures(
+    model: &RobotModel,
+    scene: &Scene,
+    stages: &[PerSide<Point>],
+    orientations: &PerSide<UnitQuaternion<f64>>,
+    limits: &MotionLimits,
+) -> Result<PerSide<JointVector>, MotionRefusal> {
+    let ways = PerSide::from_fn(|side| way(stages, side, orientations.get(side)));
+    let spans: Vec<f64> =
+        ways.left.lines().zip(ways.right.lines()).map(|(left, right)| left.spans().max(right.spans())).collect();
+    let ranked = |side: Side| ranked_candidates(model.arm(side), ways.get(side), &spans, limits);
+    let candidates = PerSide { left: ranked(Side::Left)?, right: ranked(Side::Right)? };
+    let mut pairs: Vec<_> = candidates
+        .left
+        .iter()
+        .flat_map(|left| candidates.right.iter().map(move |right| PerSide { left, right }))
+        .collect();
+    pairs.sort_by(|one, other| room_of(other).total_cmp(&room_of(one)));
+    let mut clear: Vec<(f64, &Pair)> = Vec::new();
+    let mut refusal = None;
+    for pair in &pairs {
+        if clear.len() >= PAIRS {
+            break;
+        }
+        match clearance(model, scene, pair, limits) {
+            Ok(metres) => clear.push((room_of(pair).min(metres / COMFORTABLE), pair)),
+            Err(reason) => refusal = refusal.or(Some(reason)),
+        }
+    }
+    match clear.into_iter().max_by(|one, other| one.0.total_cmp(&other.0)) {
+        Some((_, pair)) => Ok(pair.map(|_, candidate| candidate.start)),
+        None => Err(refusal.unwrap_or(MotionRefusal::NotFinite { side: Side::Left })),
+    }
+}
+
+/// One gripper's poses at all stages.
+struct Way(Vec<Pose>);
+
+fn way(stages: &[PerSide<Point>], side: Side, orientation: &UnitQuaternion<f64>) -> Way {
+    let pose = |stage: &PerSide<Point>| Isometry3::from_parts(Translation3::from(stage.get(side).coords), *orientation);
+    Way(stages.iter().map(pose).collect())
+}
+
+impl Way {
+    fn lines(&self) -> impl Iterator<Item = Line> {
+        self.0.iter().zip(self.0.iter().skip(1)).map(|(from, to)| Line::new(*from, *to))
+    }
+}
+
+/// A posture and the way that it can follow.
+struct Candidate {
+    start: JointVector,
+    knots: Vec<JointVector>,
+    /// Least room to a joint limit or joint speed along the way, as a share.
+    room: f64,
+}
+
+/// A candidate for each arm.
+type Pair<'a> = PerSide<&'a Candidate>;
+
+fn room_of(pair: &Pair) -> f64 {
+    pair.left.room.min(pair.right.room)
+}
+
+/// The least distance in metres that a pair keeps beyond what it has to keep.
+fn clearance(model: &RobotModel, scene: &Scene, pair: &Pair, limits: &MotionLimits) -> Result<f64, MotionRefusal> {
+    let count = pair.left.knots.len();
+    let at = |index: usize| pair.map(|_, candidate| candidate.knots.get(index).copied().unwrap_or(candidate.start));
+    let indices = (0..count).step_by(STRIDE).chain(count.checked_sub(1));
+    indices
+        .map(|index| room_at(model, scene, &at(index), limits))
+        .try_fold(f64::INFINITY, |least, room| Ok(least.min(room?)))
+}
+
+fn ranked_candidates(
+    arm: &ArmModel,
+    way: &Way,
+    spans: &[f64],
+    limits: &MotionLimits,
+) -> Result<Vec<Candidate>, MotionRefusal> {
+    let first = way.0.first().filter(|_| way.0.iter().all(Finite::is_finite));
+    let first = first.ok_or(MotionRefusal::NotFinite { side: arm.side() })?;
+    let starts = arm.solutions(first, CANDIDATES).map_err(|error| MotionRefusal::unreachable(arm, first, &error))?;
+    let mut refusal = None;
+    let mut candidates = Vec::new();
+    for start in starts {
+        match follow_way(arm, way, spans, &start, limits) {
+            Ok(candidate) => candidates.push(candidate),
+            Err(reason) => refusal = Some(reason),
+        }
+    }
+    match refusal {
+        Some(reason) if candidates.is_empty() => Err(reason),
+        _ => Ok(candidates),
+    }
+}
+
+fn follow_way(
+    arm: &ArmModel,
+    way: &Way,
+    spans: &[f64],
+    start: &JointVector,
+    limits: &MotionLimits,
+) -> Result<Candidate, MotionRefusal> {
+    let mut knots = vec![*start];
+    let mut room = arm.limits().margin(start);
+    for (line, spans) in way.lines().zip(spans) {
+        let here = knots.last().copied().unwrap_or(*start);
+        if line.is_still() {
+            knots.extend(std::iter::repeat_n(here, shares(*spans).count() - 1));
+            continue;
+        }
+        let next = arm.follow_line(&line, &here, *spans)?;
+        let pace = limits.speed * spans / line.length.max(f64::EPSILON);
+        for (before, after) in next.iter().zip(next.iter().skip(1)) {
+            let rate = ((after - before) * pace).abs().component_div(&limits.joint_speed).max();
+            room = room.min(arm.limits().margin(after)).min(1.0 - rate);
+        }
+        knots.extend(next.into_iter().skip(1));
+    }
+    Ok(Candidate { start: *start, knots, room })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,12 @@
 //! Why a motion is refused, in words for the operator: what, where, which value, and what would do.
 
+use super::collision::Proximity;
+use super::inverse::InverseError;
 use super::limits::Workspace;
+use super::model::ArmModel;
 use super::timing::TimingError;
 use crate::body::Side;
-use crate::geometry::Point;
+use crate::geometry::{Point, Pose};
 use thiserror::Error;
 
 /// Why a motion was not planned. Nothing has moved.
@@ -73,23 +76,33 @@ pub enum MotionRefusal {
         range: (f64, f64),
     },
     /// Two things would touch or come closer than allowed.
-    #[error("{first} would come within {distance:.3} m of {second}; at least {least:.3} m is kept")]
-    Collision {
-        /// One of them, in the operator's words.
-        first: String,
-        /// The other.
-        second: String,
-        /// Their distance in metres; negative where they would overlap.
-        distance: f64,
-        /// The distance to keep, in metres.
-        least: f64,
-    },
+    #[error("{} would come within {:.3} m of {}; at least {:.3} m is kept", .0.first, .0.distance, .0.second, .0.least)]
+    Collision(Proximity),
     /// No speed profile keeps the limits.
     #[error(transparent)]
     Timing(#[from] TimingError),
 }
 
+impl From<Proximity> for MotionRefusal {
+    fn from(proximity: Proximity) -> Self {
+        Self::Collision(proximity)
+    }
+}
+
 impl MotionRefusal {
+    /// Says where an arm cannot be brought, with the nearest place.
+    pub(super) fn unreachable(arm: &ArmModel, target: &Pose, error: &InverseError) -> Self {
+        let side = arm.side();
+        match error {
+            InverseError::NotFinite => Self::NotFinite { side },
+            InverseError::NotReached { nearest, .. } => Self::OutOfReach {
+                side,
+                place: Point::from(target.translation.vector),
+                nearest: Point::from(arm.forward(nearest).translation.vector),
+            },
+        }
+    }
+
     pub(super) fn workspace(side: Side, axis: usize, point: &Point, workspace: &Workspace) -> Self {
         let on_axis = |point: &Point| point.coords.get(axis).copied().unwrap_or(f64::NAN);
         Self::Workspace {

@@ -98,3 +98,6 @@ fn calculate(input: &InputParameter<1>) -> Result<PathTiming, TimingError> {
     generator.calculate(input, &mut trajectory).map_err(|error| TimingError { reason: error.to_string() })?;
     Ok(PathTiming { trajectory })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,105 @@
+//! Straight lines of a gripper, followed by the joints from a posture on.
+//!
+//! An arm has one joint more than a pose needs. What is left over draws the joints towards the middle of their ranges, so that
+//! going to and fro does not wind the arm up against its limits. Knows no time and no second arm.
+
+use super::JointVector;
+use super::inverse::TOLERANCE;
+use super::model::ArmModel;
+use super::refusal::MotionRefusal;
+use crate::geometry::{Point, Pose};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+
+/// Distance of two knots of a path in metres: halfway between, the spline is within a few micrometres of the line.
+const KNOT_SPACING: f64 = 0.002;
+/// Distance of two knots in radians for turns, and for joint moves.
+pub(super) const KNOT_ANGLE: f64 = 0.02;
+/// Most knots of a path: 3 m at the spacing above, more than an arm can reach.
+pub(super) const MOST_KNOTS: f64 = 1500.0;
+/// A joint that moves further than this (radians) from knot to knot jumps to another posture.
+const JUMP: f64 = 0.1;
+/// How far the left-over freedom goes towards the middle of the joint ranges from knot to knot, as a share.
+const CENTRING: f64 = 0.004;
+
+/// A straight line of the tip with an even turn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    from: Pose,
+    to: Pose,
+    pub(super) length: f64,
+    pub(super) angle: f64,
+}
+
+impl Line {
+    pub(super) fn new(from: Pose, to: Pose) -> Self {
+        let length = (to.translation.vector - from.translation.vector).norm();
+        Self { from, to, length, angle: from.rotation.angle_to(&to.rotation) }
+    }
+
+    /// How many spans between knots the line needs.
+    pub(super) fn spans(&self) -> f64 {
+        (self.length / KNOT_SPACING).max(self.angle / KNOT_ANGLE).ceil().clamp(2.0, MOST_KNOTS)
+    }
+
+    /// True where start and end are the same within twice what inverse kinematics promises: then the arm rests.
+    pub(super) fn is_still(&self) -> bool {
+        self.length < 2.0 * TOLERANCE && self.angle < 2.0 * TOLERANCE
+    }
+
+    pub(super) fn at(&self, share: f64) -> Pose {
+        let position = self.from.translation.vector.lerp(&self.to.translation.vector, share);
+        let turn = self.from.rotation.rotation_to(&self.to.rotation).scaled_axis() * share;
+        Isometry3::from_parts(Translation3::from(position), UnitQuaternion::from_scaled_axis(turn) * self.from.rotation)
+    }
+}
+
+/// The shares 0 to 1 of a path in so many spans.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number from 1 to 3000")]
+pub(super) fn shares(spans: f64) -> impl Iterator<Item = f64> {
+    (0..=spans as usize).map(move |index| index as f64 / spans)
+}
+
+impl ArmModel {
+    /// The joint positions at evenly spaced knots of a line, from a posture that is at the line's start.
+    pub(super) fn follow_line(
+        &self,
+        line: &Line,
+        start: &JointVector,
+        spans: f64,
+    ) -> Result<Vec<JointVector>, MotionRefusal> {
+        let mut knots: Vec<JointVector> = Vec::new();
+        for share in shares(spans) {
+            let guess = match knots.as_slice() {
+                [] => *start,
+                [only] => self.onward(only, only),
+                [.., before, last] => self.onward(before, last),
+            };
+            let refused = || self.not_tracked(line, share, start);
+            let next = self.follow(&line.at(share), &guess).ok_or_else(refused)?;
+            if knots.last().is_some_and(|last| (next - last).amax() > JUMP) {
+                return Err(refused());
+            }
+            knots.push(next);
+        }
+        Ok(knots)
+    }
+
+    /// The next knot if the joints go on as before and a little towards the middle, kept inside the limits.
+    fn onward(&self, before: &JointVector, last: &JointVector) -> JointVector {
+        let limits = self.limits();
+        let next = last * 2.0 - before + self.free_motion(last, &(limits.middle() - last)) * CENTRING;
+        next.zip_zip_map(&limits.lower, &limits.upper, f64::clamp)
+    }
+
+    /// Says whether the pose is out of reach at all, or only from this posture.
+    fn not_tracked(&self, line: &Line, share: f64, start: &JointVector) -> MotionRefusal {
+        let pose = line.at(share);
+        match self.inverse(&pose, start) {
+            Err(error) => MotionRefusal::unreachable(self, &pose, &error),
+            Ok(_) => {
+                let place = Point::from(pose.translation.vector);
+                MotionRefusal::NotTracked { side: self.side(), place, share }
+            }
+        }
+    }
+}
