@@ -3,8 +3,11 @@
 //! A garment notices by itself where the grippers are: its armhole goes onto a hand that a gripper brings it to, runs along
 //! the arm, and comes off again. [`Garment`] is the trait that both backends implement.
 
+mod cloth;
+mod passage;
 mod reduced;
 
+pub use cloth::ClothGarment;
 pub use reduced::ReducedGarment;
 
 use super::person::{ArmPoints, Reaction};
@@ -12,6 +15,9 @@ use crate::body::PerSide;
 use crate::geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+/// Gravity in metres per second squared.
+const GRAVITY: f64 = 9.81;
 
 /// A garment's sizes and stuff, as a profile or the command line gives them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -103,6 +109,21 @@ impl GarmentSizes {
             }
         }
         Ok(())
+    }
+}
+
+impl GarmentSizes {
+    /// The force of the back on each gripper in newtons: none before it is taut or once a side has slipped.
+    fn back_forces(&self, holders: &PerSide<Holder>, wearing: &PerSide<Wearing>) -> PerSide<Vector> {
+        let across = holders.right.tip - holders.left.tip;
+        let distance = across.norm();
+        let stretch = distance - self.back_reach_metres;
+        let slipped = wearing.iter().any(|(_, wearing)| *wearing == Wearing::Slipped);
+        if slipped || stretch <= 0.0 {
+            return PerSide { left: Vector::zeros(), right: Vector::zeros() };
+        }
+        let pull = across * (self.back_stiffness_newtons_per_metre * stretch / distance);
+        PerSide { left: pull, right: -pull }
     }
 }
 

@@ -7,7 +7,7 @@ pub use setup::{Backend, SimError, WorldSetup};
 
 use super::baxter::{SimulatedLimb, Switch, UNTUCKED_LEFT, UNTUCKED_RIGHT};
 use super::faults::{ActiveFaults, FaultPlan};
-use super::garment::{Garment, Holder, ReducedGarment, Wearing};
+use super::garment::{ClothGarment, Garment, Holder, ReducedGarment, Wearing};
 use super::person::{Reaction, SimulatedPerson};
 use super::random::{Purpose, Random};
 use super::wrench::WrenchSense;
@@ -115,6 +115,7 @@ impl World {
             switch: Switch::default(),
             garment: match setup.backend {
                 Backend::Reduced => Box::new(ReducedGarment::new(setup.garment.clone())),
+                Backend::Cloth => Box::new(ClothGarment::new(setup.garment.clone(), setup.person.body.arm_sizes())),
             },
             person: setup.person.clone(),
             reactions,

@@ -5,18 +5,11 @@
 //! that were found by fitting the thesis' table 4.2 (`docs/results.md`, "Simulated people").
 
 use super::super::person::{ArmPoints, Pull, Reaction};
-use super::{Garment, GarmentSizes, Holder, Wearing};
+use super::passage::{Event, Passage, Place};
+use super::{GRAVITY, Garment, GarmentSizes, Holder, Wearing};
 use crate::body::{PerSide, Side};
-use crate::geometry::{Point, Vector, closest_on_segment};
+use crate::geometry::Vector;
 
-/// An armhole that comes this near to the hand goes round it, in metres: about the radius of an armhole.
-const CAPTURE: f64 = 0.08;
-/// An armhole that is brought this far beyond the fingertips has come off, in metres.
-const RELEASE: f64 = 0.15;
-/// A sleeve that has gone this far is under way: its return to the hand ends the iteration. Metres along the arm.
-const UNDER_WAY: f64 = 0.10;
-/// A gripper that is back within this distance of the hand has ended its iteration, in metres.
-const BACK_AT_HAND: f64 = 0.05;
 /// Round the fingers the armhole still has room; metres of additional play at the hand, gone after as many metres.
 const PLAY_AT_HAND: f64 = 0.08;
 /// Below this speed along the path a sleeve neither goes on nor comes off, in metres per second.
@@ -31,8 +24,6 @@ const RELAXED: f64 = 0.3;
 const CEILING: f64 = 30.0;
 /// The speed at which friction is half of its full value, in metres per second.
 const FRICTION_SPEED: f64 = 0.02;
-/// Gravity in metres per second squared.
-const GRAVITY: f64 = 9.81;
 
 /// The reduced garment.
 #[derive(Clone, Debug)]
@@ -43,23 +34,9 @@ pub struct ReducedGarment {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Sleeve {
-    wearing: Wearing,
-    furthest: f64,
+    passage: Passage,
     jammed: f64,
     direction: f64,
-}
-
-/// Where a gripper is in relation to a path.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// From the gripper to the closest point of the path.
-    towards: Vector,
-    /// Direction of the path there, from hand to shoulder.
-    tangent: Vector,
-    /// Length of the path up to there in metres.
-    along: f64,
-    /// Length of the whole path in metres.
-    length: f64,
 }
 
 impl ReducedGarment {
@@ -67,18 +44,6 @@ impl ReducedGarment {
     #[must_use]
     pub fn new(sizes: GarmentSizes) -> Self {
         Self { sizes, sleeves: PerSide::default() }
-    }
-
-    /// The force of the back on the gripper of a side: none before it is taut.
-    fn back(&self, side: Side, holders: &PerSide<Holder>) -> Vector {
-        let across = holders.get(side.other()).tip - holders.get(side).tip;
-        let distance = across.norm();
-        let stretch = distance - self.sizes.back_reach_metres;
-        let slipped = Side::BOTH.into_iter().any(|side| self.sleeves.get(side).wearing == Wearing::Slipped);
-        if slipped || stretch <= 0.0 {
-            return Vector::zeros();
-        }
-        across * (self.sizes.back_stiffness_newtons_per_metre * stretch / distance)
     }
 }
 
@@ -91,14 +56,16 @@ impl Garment for ReducedGarment {
         reactions: &mut PerSide<Reaction>,
     ) -> PerSide<Vector> {
         let weight = -Vector::z() * (self.sizes.mass_kilograms * GRAVITY / 2.0);
-        let back = PerSide::from_fn(|side| self.back(side, holders));
+        let back = self.sizes.back_forces(holders, &self.wearing());
         PerSide::from_fn(|side| {
             let sleeve = self.sleeves.get_mut(side);
             let reaction = reactions.get_mut(side);
             let holder = holders.get(side);
-            let Some(place) = place(&holder.tip, reaction.path()) else { return Vector::zeros() };
-            sleeve.notice(holder, &arms.get(side).hand, &place, reaction);
-            let carried = match sleeve.wearing {
+            let Some(place) = Place::on(reaction.path(), &holder.tip) else { return Vector::zeros() };
+            if sleeve.passage.notice(holder, &arms.get(side).hand, &place, reaction) != Event::None {
+                (sleeve.jammed, sleeve.direction) = (0.0, 0.0);
+            }
+            let carried = match sleeve.passage.wearing {
                 Wearing::Slipped => {
                     reaction.react(&Pull::default(), seconds);
                     return Vector::zeros();
@@ -110,7 +77,7 @@ impl Garment for ReducedGarment {
             };
             let force = carried + back.get(side);
             if force.norm() > self.sizes.slip_newtons {
-                sleeve.wearing = Wearing::Slipped;
+                sleeve.passage.wearing = Wearing::Slipped;
                 return Vector::zeros();
             }
             force
@@ -118,44 +85,15 @@ impl Garment for ReducedGarment {
     }
 
     fn wearing(&self) -> PerSide<Wearing> {
-        self.sleeves.map(|_, sleeve| sleeve.wearing)
+        self.sleeves.map(|_, sleeve| sleeve.passage.wearing)
     }
 
     fn slip(&mut self, side: Side) {
-        self.sleeves.get_mut(side).wearing = Wearing::Slipped;
+        self.sleeves.get_mut(side).passage.wearing = Wearing::Slipped;
     }
 }
 
 impl Sleeve {
-    /// Goes onto the hand, comes off it, and ends an iteration when it is back at the hand.
-    fn notice(&mut self, holder: &Holder, hand: &Point, place: &Place, reaction: &mut Reaction) {
-        let to_hand = (holder.tip - hand).norm();
-        match self.wearing {
-            Wearing::Off if to_hand < CAPTURE => {
-                *self = Self { wearing: Wearing::On { metres: place.along }, ..Self::default() };
-            }
-            Wearing::On { .. } if place.along <= 0.0 && to_hand > RELEASE => {
-                self.end_pass(reaction);
-                self.wearing = Wearing::Off;
-            }
-            Wearing::On { .. } => {
-                self.wearing = Wearing::On { metres: place.along };
-                self.furthest = self.furthest.max(place.along);
-                if to_hand < BACK_AT_HAND {
-                    self.end_pass(reaction);
-                }
-            }
-            Wearing::Off | Wearing::Slipped => {}
-        }
-    }
-
-    fn end_pass(&mut self, reaction: &mut Reaction) {
-        if self.furthest > UNDER_WAY {
-            reaction.end_pass();
-            (self.furthest, self.jammed) = (0.0, 0.0);
-        }
-    }
-
     /// The force of sleeve and arm on the gripper.
     fn pull(&mut self, holder: &Holder, place: &Place, reaction: &mut Reaction, seconds: f64) -> Vector {
         let response = *reaction.response();
@@ -188,22 +126,6 @@ impl Sleeve {
             self.jammed *= (-seconds / JAM_LOOSENING).exp();
         }
     }
-}
-
-/// The closest point of a path; `None` where it has fewer than two points.
-fn place(tip: &Point, path: &[Point]) -> Option<Place> {
-    let mut best: Option<Place> = None;
-    let mut length = 0.0;
-    for (start, end) in path.iter().zip(path.iter().skip(1)) {
-        let closest = closest_on_segment(tip, start, end);
-        let towards = closest - tip;
-        if best.is_none_or(|best| towards.norm_squared() < best.towards.norm_squared()) {
-            let tangent = (end - start).try_normalize(1e-9).unwrap_or_else(Vector::zeros);
-            best = Some(Place { towards, tangent, along: length + (closest - start).norm(), length: 0.0 });
-        }
-        length += (end - start).norm();
-    }
-    best.filter(|_| length > 0.0).map(|best| Place { length, ..best })
 }
 
 #[cfg(test)]

@@ -18,6 +18,8 @@ pub enum Backend {
     /// A tube round the preferred path: fast, smooth, exact.
     #[default]
     Reduced,
+    /// An armhole of cloth round a moving arm, on rapier's soft bodies: believable, some tens of times real time.
+    Cloth,
 }
 
 /// What a world is made of: everything that can differ between two simulated trials.

@@ -1,7 +1,7 @@
 use super::super::super::person::{SimulatedPerson, point_along};
 use super::super::super::random::{Purpose, Random};
 use super::*;
-use crate::geometry::polyline_length;
+use crate::geometry::{Point, polyline_length};
 
 const STEP: f64 = 0.01;
 
