@@ -23,6 +23,7 @@ pub mod cli;
 pub mod command;
 pub mod geometry;
 pub mod kinematics;
+pub mod report;
 pub mod safety;
 pub mod sensing;
 pub mod sim;
