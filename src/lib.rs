@@ -24,6 +24,8 @@ pub mod command;
 pub mod geometry;
 pub mod kinematics;
 pub mod report;
+pub mod modelling;
+pub mod planning;
 pub mod safety;
 pub mod sensing;
 pub mod sim;

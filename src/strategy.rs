@@ -1,5 +1,28 @@
-//! How a path learns from one iteration to the next: the names of the strategies.
+//! How a path learns from one iteration to the next.
+//!
+//! A [`Strategy`] is a small machine that is told what happened (the goal was reached, the garment was held up) and answers
+//! where to go next. It is pure: no clock, no thread, no random source but its seed. One and the same machine serves the
+//! robot, where a contact may come anywhere on the way, and the thesis' synthetic problem, where [`rehearse`] probes the
+//! path step by step. It never moves anything and never judges safety.
 
+mod error;
+mod fixed;
+mod force;
+mod learner;
+pub mod rehearse;
+mod report;
+mod settings;
+
+pub use error::StrategyError;
+pub use fixed::FixedPath;
+pub use force::ForceStrategy;
+pub use report::{Contact, Finish, Ignored, IterationSummary, LearnedPath, Reaction, Rule, WaypointChange};
+pub use settings::{
+    BlendSettings, Guards, KernelSettings, LearningSettings, MultimodalSettings, OffsetFieldSettings, StrategySettings,
+};
+
+use crate::geometry::{Finite, Point, Vector};
+use crate::modelling::ArmSpace;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -44,3 +67,103 @@ impl fmt::Display for StrategyKind {
         formatter.pad(self.name())
     }
 }
+
+/// How a path learns.
+///
+/// The order of calls in an iteration is [`begin`](Self::begin), then for each [`goal`](Self::goal) either
+/// [`arrived`](Self::arrived) or one or more [`resisted`](Self::resisted), and [`finish`](Self::finish) once `goal` is
+/// `None`. Calls out of order are harmless: they change nothing. Positions are metres in one fixed frame.
+pub trait Strategy: Send + fmt::Debug {
+    /// Which strategy this is.
+    fn kind(&self) -> StrategyKind;
+
+    /// The path that the present iteration follows, or the next one where none is under way.
+    fn path(&self) -> &[Point];
+
+    /// Starts an iteration at the path's first point, which never moves.
+    ///
+    /// # Errors
+    /// [`StrategyError::Finished`] where the strategy has ended.
+    fn begin(&mut self) -> Result<(), StrategyError>;
+
+    /// Where to go now in a straight line; `None` at the iteration's end, or where none is under way.
+    fn goal(&self) -> Option<Point>;
+
+    /// The garment was held up on the way to the goal. Go to [`Reaction::move_to`], then on to the new goal.
+    fn resisted(&mut self, contact: &Contact) -> Reaction;
+
+    /// What is still felt after the move that the last reaction asked for. Strategies that learn how stiff the garment
+    /// is use it; for others it changes nothing.
+    fn settled(&mut self, _residual: &Vector) {}
+
+    /// The goal was reached.
+    fn arrived(&mut self);
+
+    /// Whether a resistance at `position` would be listened to. Problems that can be probed anywhere ask before they
+    /// probe; on a robot contacts come unasked and [`resisted`](Self::resisted) says whether it used them.
+    fn listens_at(&self, position: &Point) -> bool;
+
+    /// Ends the iteration: moments are averaged, and what was travelled becomes the next path.
+    fn finish(&mut self) -> IterationSummary;
+
+    /// What has been learned so far, for another strategy to go on from or for a file.
+    fn learned(&self) -> LearnedPath;
+
+    /// Goes on from what another strategy learned: its path is kept. Says, in words, what is dropped. Only between
+    /// iterations; an iteration under way is given up.
+    fn adopt(&mut self, learned: &LearnedPath) -> Vec<String>;
+}
+
+/// What a strategy is built for: one arm of one person.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmContext {
+    /// Where hand, elbow and shoulder are at the start, in metres: the initial dressing path (thesis section 4.4.3).
+    pub initial: [Point; 3],
+    /// Where they can be; `None` where no movement space has been recorded.
+    pub space: Option<ArmSpace>,
+    /// Seed of all random draws.
+    pub seed: u64,
+}
+
+/// Builds a strategy.
+///
+/// # Errors
+/// [`StrategyError`] where a setting is not usable (with its key), where the initial path has points that coincide or
+/// are not finite, or where the strategy needs a movement space and there is none.
+pub fn build(
+    kind: StrategyKind,
+    settings: &StrategySettings,
+    context: &ArmContext,
+) -> Result<Box<dyn Strategy>, StrategyError> {
+    settings.validate()?;
+    check_path(&context.initial)?;
+    let space = || context.space.as_ref().ok_or(StrategyError::NoMovementSpace { strategy: kind });
+    Ok(match kind {
+        StrategyKind::Gmm => Box::new(FixedPath::from_space(space()?, &context.initial)),
+        StrategyKind::Force => Box::new(ForceStrategy::new(&context.initial, &settings.learning)),
+        _ => return Err(StrategyError::NoMovementSpace { strategy: kind }),
+    })
+}
+
+/// Two way-points closer than this are the same point, and the line between them has no direction.
+const SAME_POINT_METRES: f64 = 1e-9;
+
+fn check_path(path: &[Point]) -> Result<(), StrategyError> {
+    if path.len() < 2 {
+        return Err(StrategyError::ShortPath { points: path.len() });
+    }
+    for (index, point) in path.iter().enumerate() {
+        if !point.is_finite() {
+            return Err(StrategyError::NotFinite { index });
+        }
+    }
+    for (index, (start, end)) in path.iter().zip(path.iter().skip(1)).enumerate() {
+        if (end - start).norm() <= SAME_POINT_METRES {
+            return Err(StrategyError::NoLength { index });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,7 @@
+//! Way-points and how they are moved: straight lines, the optimisers of thesis section 4.3, and the criteria by which
+//! paths are judged (reachability and comfort). Pure arithmetic: never asks a robot for anything.
+
+pub mod line;
+pub mod optimiser;
+
+pub use optimiser::{Method, Optimiser, OptimiserSettings, OptimiserState, SecondMoment};
