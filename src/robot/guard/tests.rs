@@ -1,0 +1,198 @@
+use super::*;
+use crate::kinematics::RobotModel;
+use crate::robot::dummy::{DummyLimb, Told};
+use proptest::prelude::*;
+use std::sync::LazyLock;
+
+static MODEL: LazyLock<RobotModel> = LazyLock::new(|| RobotModel::baxter().unwrap());
+/// A posture whose gripper is well inside the workspace.
+const HOME: [f64; 7] = [-0.04, -0.15, 0.30, 1.44, -0.80, -0.65, 0.0];
+
+fn at(milliseconds: u64) -> Stamp {
+    Stamp::from_nanoseconds(milliseconds * 1_000_000)
+}
+
+fn guarded() -> GuardedLimb<DummyLimb> {
+    let arm = MODEL.arm(Side::Right).clone();
+    let latch = Arc::new(AtomicBool::new(false));
+    let mut limb =
+        GuardedLimb::new(DummyLimb::default(), arm, MotionLimits::default(), GuardSettings::default(), latch);
+    limb.observe(at(1000), &HOME.map(Some));
+    limb
+}
+
+fn refused(limb: &mut GuardedLimb<DummyLimb>, now: Stamp, joints: &JointVector) -> LimitBreach {
+    let before = limb.inner().told.len();
+    let error = limb.command(now, joints).unwrap_err();
+    assert_eq!(limb.inner().told.len(), before, "nothing is sent");
+    match error {
+        CommandError::Refused(breach) => breach,
+        CommandError::Port(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn a_command_inside_all_limits_passes_unchanged() {
+    let mut limb = guarded();
+    let joints = JointVector::from(HOME);
+    limb.command(at(1010), &joints).unwrap();
+    assert_eq!(limb.inner().told, [(at(1010), Told::Command(joints))]);
+    assert_eq!(limb.joints(), Some(joints));
+}
+
+#[test]
+fn a_position_outside_the_limits_or_no_number_is_refused_by_name() {
+    for value in [3.2, f64::NAN, f64::INFINITY] {
+        let mut joints = JointVector::from(HOME);
+        joints[5] = value;
+        let breach = refused(&mut guarded(), at(1010), &joints);
+        assert_eq!(breach.what, Limit::JointPosition { joint: "right_w1".into() });
+    }
+}
+
+#[test]
+fn stale_or_missing_joint_positions_are_refused() {
+    let joints = JointVector::from(HOME);
+    let breach = refused(&mut guarded(), at(1101), &joints);
+    assert_eq!(breach.what, Limit::Freshness { side: Side::Right });
+    assert!((breach.value - 0.101).abs() < 1e-9);
+    let mut limb = guarded();
+    limb.measured[3] = None;
+    assert_eq!(refused(&mut limb, at(1010), &joints).what, Limit::Freshness { side: Side::Right });
+}
+
+#[test]
+fn one_joint_that_is_not_heard_of_any_more_is_enough() {
+    let mut limb = guarded();
+    let mut newer = HOME.map(Some);
+    newer[4] = None;
+    limb.observe(at(1200), &newer);
+    let breach = refused(&mut limb, at(1210), &JointVector::from(HOME));
+    assert_eq!(breach.what, Limit::Freshness { side: Side::Right });
+}
+
+#[test]
+fn a_first_command_far_from_where_the_arm_is_is_refused() {
+    let mut joints = JointVector::from(HOME);
+    joints[2] += 0.06;
+    let breach = refused(&mut guarded(), at(1010), &joints);
+    assert_eq!(breach.what, Limit::Following { joint: "right_e0".into() });
+}
+
+#[test]
+fn a_step_faster_than_the_joint_may_move_is_refused_with_its_speed() {
+    let mut limb = guarded();
+    let mut joints = JointVector::from(HOME);
+    limb.command(at(1000), &joints).unwrap();
+    joints[0] += 0.02;
+    let breach = refused(&mut limb, at(1010), &joints);
+    assert_eq!(breach.what, Limit::JointSpeed { joint: "right_s0".into() });
+    assert!((breach.value - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_sudden_start_is_refused_with_its_acceleration() {
+    let mut limb = guarded();
+    let mut joints = JointVector::from(HOME);
+    limb.command(at(1000), &joints).unwrap();
+    joints[1] -= 0.005;
+    let breach = refused(&mut limb, at(1010), &joints);
+    assert_eq!(breach.what, Limit::JointAcceleration { joint: "right_s1".into() });
+}
+
+#[test]
+fn an_arm_that_does_not_follow_is_refused() {
+    let mut limb = guarded();
+    let joints = JointVector::from(HOME);
+    limb.command(at(1000), &joints).unwrap();
+    let mut held = HOME;
+    held[6] -= 0.4;
+    limb.observe(at(1005), &held.map(Some));
+    let breach = refused(&mut limb, at(1010), &joints);
+    assert_eq!(breach.what, Limit::Following { joint: "right_w2".into() });
+}
+
+#[test]
+fn a_gripper_that_would_leave_the_workspace_is_refused_and_one_outside_may_come_back() {
+    let mut limb = guarded();
+    let here = MODEL.arm(Side::Right).forward(&JointVector::from(HOME)).translation.vector;
+    limb.limits.workspace.upper.x = here.x - 0.01;
+    let mut joints = JointVector::from(HOME);
+    joints[1] += 0.001;
+    let tip = |joints: &JointVector| MODEL.arm(Side::Right).forward(joints).translation.vector.x;
+    let (outward, inward) = if tip(&joints) > here.x { (0.001, -0.001) } else { (-0.001, 0.001) };
+    joints[1] = HOME[1] + outward;
+    let breach = refused(&mut limb, at(1010), &joints);
+    assert_eq!(breach.what, Limit::Workspace { side: Side::Right, axis: 'x' });
+    joints[1] = HOME[1] + inward;
+    limb.command(at(1010), &joints).unwrap();
+}
+
+#[test]
+fn nothing_passes_while_the_stop_latch_is_set() {
+    let mut limb = guarded();
+    limb.latch.store(true, Ordering::SeqCst);
+    assert_eq!(refused(&mut limb, at(1010), &JointVector::from(HOME)).what, Limit::StopLatch);
+    limb.latch.store(false, Ordering::SeqCst);
+    limb.command(at(1020), &JointVector::from(HOME)).unwrap();
+}
+
+#[test]
+fn after_a_pause_the_next_command_must_be_where_the_arm_is() {
+    let mut limb = guarded();
+    limb.command(at(1000), &JointVector::from(HOME)).unwrap();
+    let mut sunk = HOME;
+    sunk[1] += 0.2;
+    limb.observe(at(1300), &sunk.map(Some));
+    let breach = refused(&mut limb, at(1310), &JointVector::from(HOME));
+    assert_eq!(breach.what, Limit::Following { joint: "right_s1".into() });
+    limb.command(at(1320), &JointVector::from(sunk)).unwrap();
+}
+
+#[test]
+fn a_hold_is_never_refused_and_forgets_the_command() {
+    let mut limb = guarded();
+    limb.command(at(1000), &JointVector::from(HOME)).unwrap();
+    limb.latch.store(true, Ordering::SeqCst);
+    limb.hold(at(1010));
+    assert_eq!(limb.inner().told.last(), Some(&(at(1010), Told::Hold)));
+    assert_eq!(limb.joints(), Some(JointVector::from(HOME)), "measured again");
+}
+
+#[test]
+fn a_port_that_fails_is_passed_on() {
+    let mut limb = guarded();
+    limb.inner.failure = Some("no wire".into());
+    let error = limb.command(at(1000), &JointVector::from(HOME)).unwrap_err();
+    assert_eq!(error.to_string(), "the dummy limb does not work: no wire");
+}
+
+proptest! {
+    #[test]
+    fn whatever_is_asked_nothing_outside_the_limits_leaves(
+        steps in proptest::collection::vec((proptest::array::uniform7(-0.03..0.03_f64), 1..40_u64), 1..40),
+    ) {
+        let mut limb = guarded();
+        let mut now = 1000;
+        let mut joints = JointVector::from(HOME);
+        for (step, milliseconds) in steps {
+            now += milliseconds;
+            let wanted = joints + JointVector::from(step);
+            limb.observe(at(now), &std::array::from_fn(|index| Some(joints[index])));
+            if limb.command(at(now), &wanted).is_ok() {
+                joints = wanted;
+            }
+        }
+        let limits = MotionLimits::default();
+        let told: Vec<_> = limb.inner().told.iter().collect();
+        for pair in told.windows(2) {
+            let ((before, Told::Command(from)), (after, Told::Command(to))) = (pair[0], pair[1]) else { continue };
+            let seconds = after.since(*before).as_secs_f64().max(SHORTEST_STEP);
+            if seconds < 0.2 {
+                let share = ((to - from) / seconds).abs().component_div(&limits.joint_speed).max();
+                prop_assert!(share <= 1.05 + 1e-9);
+            }
+            prop_assert!(MODEL.arm(Side::Right).limits().breach(to, JOINT_TOLERANCE).is_none());
+        }
+    }
+}
