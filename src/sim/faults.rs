@@ -41,6 +41,8 @@ pub enum FaultKind {
     JointFault,
     /// Somebody presses the red button; it comes up when the fault ends.
     RedButton,
+    /// The garment is caught on fist, elbow or a fold.
+    Snag,
     /// The garment slips out of a gripper.
     GarmentSlip,
     /// The person pulls the arm away.
@@ -66,6 +68,7 @@ impl FaultKind {
             Self::StaleJoints => "stale_joints",
             Self::JointFault => "joint_fault",
             Self::RedButton => "red_button",
+            Self::Snag => "snag",
             Self::GarmentSlip => "garment_slip",
             Self::PullAway { .. } => "pull_away",
         }
@@ -126,6 +129,7 @@ impl FaultPlan {
             FaultKind::StaleJoints,
             FaultKind::JointFault,
             FaultKind::RedButton,
+            FaultKind::Snag,
             FaultKind::GarmentSlip,
             FaultKind::PullAway { metres: random.between(0.05, 0.15) },
         ];
@@ -184,6 +188,7 @@ pub(super) struct ArmFaults {
     pub(super) late_commands: Option<f64>,
     pub(super) dropped_commands: Option<f64>,
     pub(super) stale_joints: bool,
+    pub(super) snag: bool,
     pub(super) garment_slip: bool,
     pub(super) pull_away: Option<f64>,
 }
@@ -198,6 +203,7 @@ impl ArmFaults {
             FaultKind::LateCommands { seconds } => self.late_commands = Some(seconds),
             FaultKind::DroppedCommands { share } => self.dropped_commands = Some(share),
             FaultKind::StaleJoints => self.stale_joints = true,
+            FaultKind::Snag => self.snag = true,
             FaultKind::GarmentSlip => self.garment_slip = true,
             FaultKind::PullAway { metres } => self.pull_away = Some(metres),
             FaultKind::LostCamera | FaultKind::LostPose | FaultKind::JointFault | FaultKind::RedButton => {}
@@ -231,7 +237,7 @@ mod tests {
             (0..400).flat_map(|seed| FaultPlan::from_seed(seed, 60.0).faults).map(|fault| fault.kind.name()).collect();
         names.sort_unstable();
         names.dedup();
-        assert_eq!(names.len(), 13, "{names:?}");
+        assert_eq!(names.len(), 14, "{names:?}");
     }
 
     #[derive(Deserialize)]

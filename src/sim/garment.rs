@@ -5,6 +5,7 @@
 
 mod cloth;
 mod passage;
+mod pull;
 mod reduced;
 
 pub use cloth::ClothGarment;
@@ -33,6 +34,14 @@ pub struct GarmentSizes {
     pub back_reach_metres: f64,
     /// Stiffness of the taut back in newtons per metre.
     pub back_stiffness_newtons_per_metre: f64,
+    /// Friction of the part of a sleeve that is past the wrist, in newtons per metre of it; 0 for a sleeveless garment.
+    pub sleeve_friction_newtons_per_metre: f64,
+    /// How stiffly the garment pulls where it is caught on fist or elbow, in newtons per metre.
+    pub snag_stiffness_newtons_per_metre: f64,
+    /// What a catch bears before the fabric works itself loose, in newtons.
+    pub snag_ceiling_newtons: f64,
+    /// Friction of fabric that missed the hand and drags over the arm, in newtons per metre.
+    pub drape_newtons_per_metre: f64,
     /// Pull at which the fabric slips out of a gripper, in newtons.
     pub slip_newtons: f64,
 }
@@ -47,7 +56,28 @@ impl Default for GarmentSizes {
             armhole_girth_metres: 0.48,
             back_reach_metres: 0.91,
             back_stiffness_newtons_per_metre: 150.0,
+            sleeve_friction_newtons_per_metre: 0.0,
+            // Woven jackets snag at 200 to 600 N/m.
+            snag_stiffness_newtons_per_metre: 300.0,
+            snag_ceiling_newtons: 30.0,
+            drape_newtons_per_metre: 7.7,
             slip_newtons: 35.0,
+        }
+    }
+}
+
+impl GarmentSizes {
+    /// A hospital gown with long sleeves, as it was pulled over forearms in published measurements (Kapusta and others,
+    /// RO-MAN 2016): the yardstick of the pull profiles.
+    #[must_use]
+    pub fn hospital_gown() -> Self {
+        Self {
+            name: "hospital gown".into(),
+            mass_kilograms: 0.16,
+            sleeve_friction_newtons_per_metre: 19.0,
+            snag_stiffness_newtons_per_metre: 105.0,
+            snag_ceiling_newtons: 10.5,
+            ..Self::default()
         }
     }
 }
@@ -95,6 +125,10 @@ impl GarmentSizes {
             ("armhole_girth_metres", self.armhole_girth_metres, 0.1, 1.2),
             ("back_reach_metres", self.back_reach_metres, 0.3, 1.5),
             ("back_stiffness_newtons_per_metre", self.back_stiffness_newtons_per_metre, 0.0, 2000.0),
+            ("sleeve_friction_newtons_per_metre", self.sleeve_friction_newtons_per_metre, 0.0, 500.0),
+            ("snag_stiffness_newtons_per_metre", self.snag_stiffness_newtons_per_metre, 1.0, 2000.0),
+            ("snag_ceiling_newtons", self.snag_ceiling_newtons, 1.0, 100.0),
+            ("drape_newtons_per_metre", self.drape_newtons_per_metre, 0.0, 100.0),
             ("slip_newtons", self.slip_newtons, 1.0, 100.0),
         ] {
             if !(lowest..=highest).contains(&value) {
@@ -143,6 +177,11 @@ pub enum Wearing {
     /// Not on the arm.
     #[default]
     Off,
+    /// Past the hand without going round it: the fabric drags over the arm.
+    Missed {
+        /// Metres along the arm.
+        metres: f64,
+    },
     /// Round the arm, with its rim this far from the hand.
     On {
         /// Metres along the arm.
@@ -165,6 +204,9 @@ pub(super) trait Garment: std::fmt::Debug + Send {
 
     /// How far the sleeves are on.
     fn wearing(&self) -> PerSide<Wearing>;
+
+    /// Catches the rim where it is (`true`), on fist, elbow or a fold of clothing, or frees it.
+    fn snag(&mut self, side: crate::body::Side, caught: bool);
 
     /// Makes the garment slip out of a gripper.
     fn slip(&mut self, side: crate::body::Side);

@@ -227,6 +227,7 @@ impl World {
         self.switch.joint_fault(faults.joint_fault);
         for side in Side::BOTH {
             let arm = faults.arms.get(side);
+            self.garment.snag(side, arm.snag);
             if arm.garment_slip {
                 self.garment.slip(side);
             }

@@ -84,6 +84,12 @@ impl Garment for ClothGarment {
         self.sleeves.map(|_, worn| worn.passage.wearing)
     }
 
+    fn snag(&mut self, side: Side, caught: bool) {
+        if let Some(cloth) = &mut self.sleeves.get_mut(side).cloth {
+            cloth.snag(caught);
+        }
+    }
+
     fn slip(&mut self, side: Side) {
         let worn = self.sleeves.get_mut(side);
         (worn.passage.wearing, worn.cloth) = (Wearing::Slipped, None);

@@ -6,6 +6,8 @@ use crate::geometry::{Point, Vector, closest_on_segment};
 
 /// An armhole that comes this near to the hand goes round it, in metres: about the radius of an armhole.
 const CAPTURE: f64 = 0.08;
+/// An armhole that passes the hand within this distance without going round it drags over the arm, in metres.
+const NEAR_MISS: f64 = 0.20;
 /// An armhole that is brought this far beyond the fingertips has come off, in metres.
 const RELEASE: f64 = 0.15;
 /// A sleeve that has gone this far is under way: its return to the hand ends the iteration. Metres along the arm.
@@ -49,6 +51,7 @@ impl Place {
 pub(super) struct Passage {
     pub(super) wearing: Wearing,
     furthest: f64,
+    near: bool,
 }
 
 /// What a sleeve has just done.
@@ -70,8 +73,12 @@ impl Passage {
         let to_hand = (holder.tip - hand).norm();
         match self.wearing {
             Wearing::Off if to_hand < CAPTURE => {
-                *self = Self { wearing: Wearing::On { metres: place.along }, furthest: 0.0 };
+                *self = Self { wearing: Wearing::On { metres: place.along }, ..Self::default() };
                 Event::PutOn
+            }
+            Wearing::Off | Wearing::Missed { .. } => {
+                self.pass_by(to_hand, place);
+                Event::None
             }
             Wearing::On { .. } if place.along <= 0.0 && to_hand > RELEASE => {
                 self.end(reaction);
@@ -83,8 +90,18 @@ impl Passage {
                 self.furthest = self.furthest.max(place.along);
                 if to_hand < BACK_AT_HAND && self.end(reaction) { Event::Returned } else { Event::None }
             }
-            Wearing::Off | Wearing::Slipped => Event::None,
+            Wearing::Slipped => Event::None,
         }
+    }
+
+    /// An armhole that went past the hand from near it drags over the arm until it is away again.
+    fn pass_by(&mut self, to_hand: f64, place: &Place) {
+        if place.along <= 0.0 {
+            self.near = to_hand < NEAR_MISS;
+        }
+        let over_the_arm = self.near && place.along > 0.0 && place.towards.norm() < NEAR_MISS;
+        self.near = self.near && (over_the_arm || place.along <= 0.0);
+        self.wearing = if over_the_arm { Wearing::Missed { metres: place.along } } else { Wearing::Off };
     }
 
     fn end(&mut self, reaction: &mut Reaction) -> bool {

@@ -35,6 +35,8 @@ pub struct ReducedGarment {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sleeve {
     passage: Passage,
+    /// How far along the arm the rim is caught, where it is.
+    caught_at: Option<f64>,
     jammed: f64,
     direction: f64,
 }
@@ -70,9 +72,15 @@ impl Garment for ReducedGarment {
                     reaction.react(&Pull::default(), seconds);
                     return Vector::zeros();
                 }
+                Wearing::Missed { metres } => {
+                    let drape = place.tangent * self.sizes.drape_pull(metres);
+                    weight - drape * sleeve.going(&place, holder) + reaction.react(&Pull::default(), seconds)
+                }
                 Wearing::Off => weight + reaction.react(&Pull::default(), seconds),
                 Wearing::On { metres } => {
-                    weight * (1.0 - metres / place.length) + sleeve.pull(holder, &place, reaction, seconds)
+                    let along = sleeve.along(&self.sizes, metres) * sleeve.going(&place, holder);
+                    let pull = sleeve.pull(holder, &place, reaction, seconds);
+                    weight * (1.0 - metres / place.length) + pull - place.tangent * along
                 }
             };
             let force = carried + back.get(side);
@@ -88,12 +96,33 @@ impl Garment for ReducedGarment {
         self.sleeves.map(|_, sleeve| sleeve.passage.wearing)
     }
 
+    fn snag(&mut self, side: Side, caught: bool) {
+        let sleeve = self.sleeves.get_mut(side);
+        sleeve.caught_at = match (caught, sleeve.caught_at, sleeve.passage.wearing) {
+            (true, None, Wearing::On { metres }) => Some(metres),
+            (true, before, _) => before,
+            (false, ..) => None,
+        };
+    }
+
     fn slip(&mut self, side: Side) {
         self.sleeves.get_mut(side).passage.wearing = Wearing::Slipped;
     }
 }
 
 impl Sleeve {
+    /// The force of a long sleeve or a catch along the arm, in newtons, with the rim at `metres`.
+    fn along(&self, sizes: &GarmentSizes, metres: f64) -> f64 {
+        self.caught_at.map_or_else(|| sizes.sleeve_pull(metres), |caught| sizes.snag_pull(metres - caught))
+    }
+
+    /// 1 where the gripper goes on along the arm, less where it is still or comes back: fabric then lies loose.
+    fn going(&self, place: &Place, holder: &Holder) -> f64 {
+        (holder.velocity.dot(&place.tangent) / FRICTION_SPEED)
+            .clamp(0.0, 1.0)
+            .max(f64::from(u8::from(self.caught_at.is_some())))
+    }
+
     /// The force of sleeve and arm on the gripper.
     fn pull(&mut self, holder: &Holder, place: &Place, reaction: &mut Reaction, seconds: f64) -> Vector {
         let response = *reaction.response();

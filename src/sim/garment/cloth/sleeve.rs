@@ -101,9 +101,33 @@ impl ClothSleeve {
         self.reflex = Vector::new(single(force.x), single(force.y), single(force.z));
     }
 
+    /// Catches the rim on the forearm at its underside (`true`), or frees it.
+    pub(super) fn snag(&mut self, caught: bool) {
+        let Some(cloth) = self.world.soft_bodies.get_mut(self.cloth) else { return };
+        let is_caught = cloth.particle_attachments().iter().any(|attachment| attachment.body == self.forearm.body);
+        if caught == is_caught {
+            return;
+        }
+        let lowest = (0..cloth.num_particles())
+            .min_by(|one, other| cloth.particle_position(*one).z.total_cmp(&cloth.particle_position(*other).z));
+        let Some(lowest) = lowest else { return };
+        if caught {
+            cloth.attach_particle(lowest, self.forearm.body, &self.world.bodies);
+        } else {
+            let held: Vec<usize> = (cloth.particle_attachments().iter())
+                .filter(|attachment| attachment.body == self.forearm.body)
+                .map(|attachment| attachment.particle as usize)
+                .collect();
+            for particle in held {
+                cloth.detach_particle(particle);
+            }
+        }
+    }
+
     fn attachment_impulse(&self) -> Vector {
         let Some(cloth) = self.world.soft_bodies.get(self.cloth) else { return Vector::ZERO };
-        cloth.particle_attachments().iter().map(SoftParticleAttachment::impulse).sum()
+        let held = cloth.particle_attachments().iter().filter(|attachment| attachment.body == self.gripper);
+        held.map(SoftParticleAttachment::impulse).sum()
     }
 }
 
