@@ -21,6 +21,7 @@ pub mod assembly;
 pub mod body;
 pub mod cli;
 pub mod command;
+pub mod console;
 pub mod geometry;
 pub mod kinematics;
 pub mod modelling;

@@ -1,0 +1,84 @@
+//! Why a key does nothing now, in words: what the key line shows as disabled.
+//!
+//! Only what the snapshot itself rules out is refused here; everything else is asked of the supervisor, which decides.
+
+use crate::console::keymap::{Action, Guard};
+use crate::snapshot::{Snapshot, StopPhase, TrialPhase, Watermark};
+
+/// Why an action cannot be done now; `None` where it can be asked for.
+pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option<&'static str> {
+    let guard = action.entry().map_or(Guard::None, |entry| entry.guard);
+    if guard == Guard::Immediate {
+        return None;
+    }
+    if snapshot.watermark == Watermark::Watch && asks_the_robot(action) {
+        return Some("this screen only watches");
+    }
+    let phase = snapshot.trial.phase;
+    let stopped = snapshot.stop.phase(snapshot.now) != StopPhase::Clear
+        || snapshot.robot.fresh(snapshot.now).is_some_and(|robot| robot.stopped);
+    match action {
+        Action::Reset => (!stopped).then_some("nothing is stopped"),
+        Action::Enable | Action::Start | Action::Withdraw | Action::GoAhead if stopped => Some("stopped: reset first"),
+        Action::NextIteration | Action::NextStep | Action::PreviousStep if stopped => Some("stopped: reset first"),
+        Action::HoldOrContinue if stopped => Some("stopped: reset first"),
+        Action::Start if phase.is_running() && phase != TrialPhase::Holding => Some("a trial runs"),
+        Action::Start => needs_enabled(snapshot),
+        Action::HoldOrContinue | Action::Withdraw | Action::Abort | Action::FinishAfterThis if !phase.is_running() => {
+            Some("no trial runs")
+        }
+        Action::GoAhead if phase != TrialPhase::Waiting => Some("nothing waits for it"),
+        Action::Profile | Action::Garment | Action::FirstArm if phase.is_running() => Some("only before a trial"),
+        Action::RecordMovement if phase.is_running() => Some("only before a trial"),
+        Action::Tare | Action::SignCheck if phase.moves() => Some("only when the arms are still"),
+        _ if is_replay(action) && snapshot.watermark != Watermark::Replay => Some("only in a replay"),
+        _ => None,
+    }
+}
+
+fn needs_enabled(snapshot: &Snapshot) -> Option<&'static str> {
+    match snapshot.robot.fresh(snapshot.now) {
+        None => Some("the robot's state is not known"),
+        Some(robot) if !robot.enabled => Some("enable the robot first"),
+        Some(_) => None,
+    }
+}
+
+const fn is_replay(action: Action) -> bool {
+    matches!(
+        action,
+        Action::ReplayStep | Action::ReplaySlower | Action::ReplayFaster | Action::ReplayBack | Action::ReplayForward
+    )
+}
+
+/// True for what a watching screen must not do.
+const fn asks_the_robot(action: Action) -> bool {
+    matches!(
+        action,
+        Action::HoldOrContinue
+            | Action::GoAhead
+            | Action::NextStep
+            | Action::PreviousStep
+            | Action::NextIteration
+            | Action::FinishAfterThis
+            | Action::Withdraw
+            | Action::Abort
+            | Action::Start
+            | Action::Reset
+            | Action::Enable
+            | Action::Disable
+            | Action::StrategyGmm
+            | Action::StrategyForce
+            | Action::StrategyMultimodal
+            | Action::StrategyList
+            | Action::Profile
+            | Action::Garment
+            | Action::FirstArm
+            | Action::Settings
+            | Action::RecordMovement
+            | Action::Tare
+            | Action::SignCheck
+            | Action::Record
+            | Action::Note
+    )
+}

@@ -1,0 +1,123 @@
+//! Whether everything lives: the check-list, master, robot, red button, recorder and disk, and every topic, worst first.
+
+use crate::console::draw::{Scene, button, robot_words, verdict_word};
+use crate::console::theme::Role;
+use crate::console::widgets::text::{age, bytes, fill, line, seconds, span, title};
+use crate::snapshot::{TopicHealth, Verdict};
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::text::Line;
+
+/// Bytes below which the disk is said to be nearly full: about ten minutes with depth images.
+const LITTLE_DISK: u64 = 5_000_000_000;
+
+/// Draws the screen.
+pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
+    let checks = check_lines(scene);
+    let count = u16::try_from(checks.len()).unwrap_or(0).min(area.height / 3);
+    let [links, list, topics] = Layout::vertical([
+        Constraint::Length(5),
+        Constraint::Length(if count == 0 { 0 } else { count + 1 }),
+        Constraint::Fill(1),
+    ])
+    .areas(area);
+    fill(buffer, links, link_lines(scene));
+    fill(buffer, list, std::iter::once(title(scene.look, "Check-list")).chain(checks));
+    fill(buffer, topics, topic_lines(scene, topics.width));
+}
+
+/// The check-list, one line each.
+pub(super) fn check_lines<'a>(scene: &Scene<'a>) -> Vec<Line<'a>> {
+    let look = scene.look;
+    let line = |check: &'a crate::snapshot::CheckLine| {
+        let (symbol, role) = look.verdict(check.verdict);
+        let age = check.age.map_or_else(String::new, |age| format!(" ({} old)", seconds(age)));
+        let hint = if check.verdict == Verdict::Good || check.hint.is_empty() {
+            String::new()
+        } else {
+            format!(" {} {}", look.glyphs().arrow, check.hint)
+        };
+        Line::from(vec![
+            span(look, role, format!("{symbol} {:<6}", verdict_word(check.verdict))),
+            span(look, Role::Text, format!("{:<20} {}{age}", check.name, check.value)),
+            span(look, Role::Late, hint),
+        ])
+    };
+    scene.live.checks.iter().map(line).collect()
+}
+
+fn link_lines<'a>(scene: &Scene<'a>) -> Vec<Line<'a>> {
+    let (live, look, glyphs) = (scene.live, scene.look, scene.look.glyphs());
+    let master = match (live.master.uri.is_empty(), live.master.connected) {
+        (true, _) => (format!("{} none: this run needs no master", glyphs.good), Role::Muted),
+        (false, true) => (format!("{} LIVE {} {}", glyphs.good, live.master.uri, live.master.text), Role::Good),
+        (false, false) => (format!("{} FAULT {} {}", glyphs.fault, live.master.uri, live.master.text), Role::Fault),
+    };
+    let recorder = recorder_line(scene);
+    let row = |name: &'static str, (text, role): (String, Role)| {
+        Line::from(vec![span(look, Role::Title, format!("{name:<10}")), span(look, role, text)])
+    };
+    let pressed = live.robot.fresh(live.now).is_some_and(|robot| robot.button == crate::assembly::RedButton::Pressed);
+    vec![
+        row("master", master),
+        row("robot", robot_words(scene)),
+        row(
+            "red button",
+            (format!("{} (the safety-rated stop)", button(live)), if pressed { Role::Stop } else { Role::Text }),
+        ),
+        row("recorder", recorder),
+    ]
+}
+
+fn recorder_line(scene: &Scene<'_>) -> (String, Role) {
+    let (recorder, glyphs) = (&scene.live.recorder, scene.look.glyphs());
+    let disk = recorder.disk_free.map_or_else(String::new, |free| format!(" · {} free on disk", bytes(free)));
+    let drops = if recorder.drops > 0 { format!(" · {} events lost", recorder.drops) } else { String::new() };
+    let little = recorder.disk_free.is_some_and(|free| free < LITTLE_DISK);
+    if !recorder.fault.is_empty() {
+        (format!("{} FAULT {}{disk}", glyphs.fault, recorder.fault), Role::Fault)
+    } else if recorder.on {
+        let role = if little || recorder.drops > 0 { Role::Late } else { Role::Good };
+        let symbol = if role == Role::Late { glyphs.late } else { glyphs.good };
+        (format!("{symbol} ON {} · {}{drops}{disk}", recorder.file, bytes(recorder.bytes)), role)
+    } else {
+        (format!("{} OFF{disk}", glyphs.late), Role::Late)
+    }
+}
+
+fn topic_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
+    let (live, look) = (scene.live, scene.look);
+    let mut topics: Vec<&TopicHealth> = live.topics.iter().filter(|topic| scene.view.passes(&topic.name)).collect();
+    topics.sort_by_key(|topic| std::cmp::Reverse(topic.verdict(live.now)));
+    let heading = format!("Topics: {} of {}, worst first", topics.len(), live.topics.len());
+    let mut lines = vec![title(look, heading)];
+    let columns = format!(
+        "{:<8}{:<44}{:>7} {:>11} {:>8} {:>7} {:>7} {:>6}",
+        "state", "topic", "rate/s", "expected", "age", "gap", "jitter", "drops"
+    );
+    lines.push(line(look, Role::Muted, if width >= 100 { format!("{columns}  publisher") } else { columns }));
+    let skipped = scene.view.row.min(topics.len().saturating_sub(1));
+    lines.extend(topics.into_iter().skip(skipped).map(|topic| topic_line(scene, topic)));
+    lines
+}
+
+fn topic_line<'a>(scene: &Scene<'a>, topic: &TopicHealth) -> Line<'a> {
+    let (look, now) = (scene.look, scene.live.now);
+    let verdict = topic.verdict(now);
+    let (symbol, role) = look.verdict(verdict);
+    let none = look.glyphs().none;
+    let expected = format!("{:.0}..{:.0}", topic.expected.0, topic.expected.1);
+    let live = verdict < Verdict::Stale;
+    let number = |text: String| if live { text } else { none.to_owned() };
+    let publishers = if topic.publishers.is_empty() { "nobody".into() } else { topic.publishers.join(" ") };
+    let needed = if topic.required { "" } else { " (optional)" };
+    Line::from(vec![
+        span(look, role, format!("{symbol} {:<6}", verdict_word(verdict))),
+        span(look, Role::Text, format!("{:<44}", format!("{}{needed}", topic.name))),
+        span(look, Role::Text, format!("{:>7} {expected:>11} ", number(format!("{:.1}", topic.rate)))),
+        span(look, role, format!("{:>8}", age(&topic.freshness, now, none))),
+        span(look, Role::Text, format!(" {:>7} {:>7}", number(seconds(topic.gap)), number(seconds(topic.jitter)))),
+        span(look, if topic.drops > 0 { Role::Late } else { Role::Muted }, format!(" {:>6}", topic.drops)),
+        span(look, Role::Muted, format!("  {publishers}")),
+    ])
+}
