@@ -22,6 +22,7 @@ pub mod body;
 pub mod cli;
 pub mod command;
 pub mod console;
+pub mod experiments;
 pub mod geometry;
 pub mod kinematics;
 pub mod modelling;

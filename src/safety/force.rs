@@ -9,13 +9,13 @@
 mod catch;
 mod settings;
 
-pub use settings::{GuardError, GuardSettings, HARD_CAP_NEWTONS, Tiers, Zone};
+pub use settings::{CatchLimits, GuardError, GuardSettings, HARD_CAP_NEWTONS, Tiers, Zone};
 
 use super::{Reaction, Verdict};
 use crate::geometry::{Finite, Vector};
 use crate::sensing::{BiasTracker, Detection, Tare, TareError, TwoRate};
 use crate::time::Stamp;
-use catch::SoftCatch;
+use catch::CatchFit;
 
 /// Time constant of the mean that the tiers are compared with, in seconds: short enough for a stop, long enough that
 /// noise of 2 N does not cross a tier.
@@ -62,7 +62,8 @@ pub struct ForceGuard {
     settings: GuardSettings,
     bias: BiasTracker,
     fast_change: TwoRate,
-    catch: SoftCatch,
+    soft: CatchFit,
+    hard: CatchFit,
     last: Option<Stamp>,
     load: Option<Vector>,
     tier: Reaction,
@@ -80,7 +81,8 @@ impl ForceGuard {
         Ok(Self {
             bias: BiasTracker::new(settings.bias)?,
             fast_change: TwoRate::new(settings.fast_change)?,
-            catch: SoftCatch::new(settings.catch_window_metres),
+            soft: CatchFit::new(settings.catch.window_metres),
+            hard: CatchFit::new(settings.hard_catch.window_metres),
             settings,
             last: None,
             load: None,
@@ -162,23 +164,20 @@ impl ForceGuard {
     }
 
     fn judge_catch(&mut self, now: Vector, sample: &GuardSample, seconds: f64) -> Verdict {
-        let speed = sample.velocity.norm();
+        let metres = sample.velocity.norm() * seconds;
         let beyond = beyond_expected(now, sample);
-        self.catch.push(beyond, speed * seconds);
-        let limit = self.settings.catch_newtons_per_metre;
-        let stiffness = self.catch.stiffness();
-        let beyond_mask = self.catch.growth() > self.settings.catch_least_newtons + self.mask(sample);
-        match stiffness {
-            Some(stiffness) if stiffness > limit && beyond_mask => {
-                let cause = format!("force grows by {stiffness:.0} N/m along the way, a catch from {limit:.0} N/m");
-                self.catch.found(sample.stamp);
-                Verdict::new(self.settings.catch_reaction, cause)
-            }
-            _ => {
-                self.catch.lost();
-                Verdict::clear()
-            }
+        let mask = self.mask(sample);
+        for (fit, limits) in [(&mut self.soft, &self.settings.catch), (&mut self.hard, &self.settings.hard_catch)] {
+            fit.push(beyond, metres);
+            fit.judge(sample.stamp, limits.newtons_per_metre, limits.least_newtons + mask);
         }
+        let limits = [(&self.soft, &self.settings.catch), (&self.hard, &self.settings.hard_catch)];
+        let caught = limits.into_iter().find(|(fit, _)| fit.detection().is_some());
+        caught.map_or_else(Verdict::clear, |(fit, limits)| {
+            let (stiffness, limit) = (fit.stiffness().unwrap_or_default(), limits.newtons_per_metre);
+            let cause = format!("force grows by {stiffness:.0} N/m along the way, a catch from {limit:.0} N/m");
+            Verdict::new(self.settings.catch_reaction, cause)
+        })
     }
 
     fn judge_work(&mut self, load: Vector, sample: &GuardSample, seconds: f64) -> Verdict {
@@ -200,11 +199,11 @@ impl ForceGuard {
         &self.verdict
     }
 
-    /// A sleeve that catches softly, from the sample that showed it on as long as it lasts. Its resistance points as the
+    /// A sleeve that catches, softly or hard, from the sample that showed it on as long as it lasts. Its resistance points as the
     /// external force does, in `base`; its magnitude is what has grown over the window, in newtons.
     #[must_use]
-    pub const fn soft_catch(&self) -> Option<Detection> {
-        self.catch.detection()
+    pub fn catch(&self) -> Option<Detection> {
+        self.soft.detection().or(self.hard.detection())
     }
 
     /// The smoothed force without bias that the tiers are compared with, in `base`, in newtons.
@@ -238,7 +237,8 @@ impl ForceGuard {
     /// A pass begins, or the arm starts on another way: what was learned on the old one means nothing. The zero and the
     /// smoothed force stay.
     pub fn motion_begins(&mut self) {
-        self.catch.reset();
+        self.soft.reset();
+        self.hard.reset();
         self.work_joules = 0.0;
     }
 

@@ -1,7 +1,8 @@
 //! How fast force grows along the way: the slope of a line fitted to force over the travelled metres.
 //!
 //! Time does not come in: a sleeve that catches is a spring, so its force grows with the way and not with the clock, at
-//! whatever speed. A bias that drifts in time, however far, grows little over the twelve centimetres of the window.
+//! whatever speed. A bias that drifts over the whole way grows little within one window. A long window finds a soft catch
+//! in spite of noise, a short one a hard catch in time: the guard has both.
 
 use crate::geometry::Vector;
 use crate::sensing::Detection;
@@ -9,9 +10,9 @@ use crate::time::Stamp;
 use std::collections::VecDeque;
 
 /// Steps of the way in which forces are averaged before the line is fitted, over the whole window.
-const BINS: f64 = 24.0;
+const BINS: f64 = 20.0;
 /// Share of the window that must be filled before its slope means anything.
-const LEAST_SHARE: f64 = 0.6;
+const LEAST_SHARE: f64 = 0.9;
 
 #[derive(Clone, Copy, Debug)]
 struct Bin {
@@ -22,7 +23,7 @@ struct Bin {
 
 /// The fit along one arm's way.
 #[derive(Clone, Debug)]
-pub(super) struct SoftCatch {
+pub(super) struct CatchFit {
     window_metres: f64,
     metres: f64,
     bins: VecDeque<Bin>,
@@ -30,7 +31,7 @@ pub(super) struct SoftCatch {
     detection: Option<Detection>,
 }
 
-impl SoftCatch {
+impl CatchFit {
     pub(super) fn new(window_metres: f64) -> Self {
         Self { window_metres, metres: 0.0, bins: VecDeque::new(), fit: None, detection: None }
     }
@@ -79,22 +80,15 @@ impl SoftCatch {
         self.fit.map(|(slope, _)| slope.norm())
     }
 
-    /// What has grown over the window, in newtons.
-    pub(super) fn growth(&self) -> f64 {
-        self.fit.map_or(0.0, |(slope, span)| slope.norm() * span)
-    }
-
-    /// The growth is a catch.
-    pub(super) fn found(&mut self, stamp: Stamp) {
-        if let (None, Some((slope, span))) = (self.detection, self.fit) {
+    /// Compares the growth with its limits: a slope in N/m, and newtons over the window. The first find stays as long as
+    /// it lasts.
+    pub(super) fn judge(&mut self, stamp: Stamp, newtons_per_metre: f64, least_newtons: f64) {
+        let caught =
+            self.fit.filter(|(slope, span)| slope.norm() > newtons_per_metre && slope.norm() * span > least_newtons);
+        self.detection = caught.map(|(slope, span)| {
             let resistance = slope * span;
-            self.detection = Some(Detection { stamp, resistance, magnitude: resistance.norm() });
-        }
-    }
-
-    /// The growth is none any more.
-    pub(super) const fn lost(&mut self) {
-        self.detection = None;
+            self.detection.unwrap_or(Detection { stamp, resistance, magnitude: resistance.norm() })
+        });
     }
 
     pub(super) const fn detection(&self) -> Option<Detection> {

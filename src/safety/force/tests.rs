@@ -58,12 +58,12 @@ fn found_at(stiffness: f64, speed: f64, settings: GuardSettings) -> Option<f64> 
     (0..1000).find_map(|index| {
         let force = stiffness * speed * index as f64 * 0.01;
         guard.observe(&GuardSample { velocity, ..sample(index, Vector::new(-force, 0.0, 0.0)) });
-        guard.soft_catch().map(|_| force)
+        guard.catch().map(|_| force)
     })
 }
 
 #[test]
-fn s_14_a_soft_catch_is_found_before_ten_newtons_at_every_speed() {
+fn s_14_a_soft_spring_is_found_before_ten_newtons_at_every_speed() {
     for speed in [0.02, 0.05, 0.1, 0.2, 0.25] {
         let force = found_at(60.0, speed, GuardSettings::default()).unwrap();
         assert!(force < 8.0, "found at {force:.1} N at {speed} m/s");
@@ -84,7 +84,7 @@ fn the_resistance_of_a_catch_points_as_the_sleeve_pulls() {
     for index in 0..300 {
         let pull = Vector::new(-0.06, 0.03, 0.0) * index as f64;
         guard.observe(&GuardSample { velocity, ..sample(index, pull) });
-        if let Some(found) = guard.soft_catch() {
+        if let Some(found) = guard.catch() {
             assert!(found.resistance.normalize().dot(&Vector::new(-0.894, 0.447, 0.0)) > 0.99);
             assert!((found.magnitude - found.resistance.norm()).abs() < 1e-12);
             return;
@@ -203,7 +203,7 @@ fn a_gap_in_the_samples_does_not_join_what_lies_apart() {
     }
     for index in 100..170 {
         guard.observe(&GuardSample { velocity, ..sample(index, Vector::new(7.0, 0.0, 0.0)) });
-        assert!(guard.soft_catch().is_none());
+        assert!(guard.catch().is_none());
     }
 }
 
