@@ -23,6 +23,7 @@ pub mod cli;
 pub mod command;
 pub mod console;
 pub mod experiments;
+pub mod config;
 pub mod geometry;
 pub mod kinematics;
 pub mod modelling;

@@ -3,5 +3,7 @@
 
 pub mod line;
 pub mod optimiser;
+mod warm_start;
 
 pub use optimiser::{Method, Optimiser, OptimiserSettings, OptimiserState, SecondMoment};
+pub use warm_start::{ArmJoints, ArmRelative, carried_over};

@@ -1,0 +1,16 @@
+//! From what was typed or written to what is needed: settings, and the profiles of people.
+//!
+//! Settings come from a file that valet never writes; a profile is one TOML file a person, under a pseudonym. Every error
+//! names the file and the key. Nothing here talks to a robot.
+
+mod builtin;
+mod error;
+mod layers;
+mod places;
+mod profile;
+mod version;
+
+pub use error::ConfigError;
+pub use layers::layered;
+pub use places::{Places, profile_names};
+pub use profile::{Consent, Garment, LearnedPath, LoadedProfile, Profile};
