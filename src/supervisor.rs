@@ -1,5 +1,292 @@
-//! The door into the core: what may reach the supervisor.
+//! The supervisor: owns everything that decides, and is stepped.
+//!
+//! [`Supervisor::step`] takes one input and the time and returns what is to be done. It has no clock, file, socket,
+//! thread or random source: the same inputs at the same times bring the same effects, byte for byte.
+//!
+//! What it never does: let an arm move while a stop is latched, while the robot is not enabled, or on force, joints or
+//! robot state that are stale or not finite. What it decides is checked once more by the guards at the ports.
 
-mod input;
+mod drive;
+pub mod effect;
+pub mod input;
+mod operator;
+mod protection;
+mod running;
+mod settings;
+mod tuning;
+mod view;
 
+pub use effect::{Effect, Effects};
 pub use input::{EndpointSample, Input, JointSample, LinkEvent};
+pub use settings::{SettingsError, Setup, SupervisorSettings};
+
+use crate::assembly::{RobotState, StopSource, SwitchRequest};
+use crate::body::{BodyPose, PerSide, Side};
+use crate::kinematics::RobotModel;
+use crate::safety::{Reaction, Verdict};
+use crate::sequencing::Trial;
+use crate::snapshot::{Level, Outcome, Snapshot};
+use crate::strategy::{Contact, StrategyKind};
+use crate::time::Stamp;
+use drive::Drive;
+use protection::Protection;
+
+/// What the supervisor is about at the moment.
+#[derive(Clone, Debug, PartialEq)]
+enum Mode {
+    /// No trial runs.
+    Idle,
+    /// A trial runs.
+    Running,
+    /// A trial is held, enabled and still, until the operator says how it goes on.
+    Held,
+}
+
+/// The share of its speed at which a motion goes on under a verdict of slow.
+const SLOW_RATIO: f64 = 0.5;
+
+/// Owns sensing, strategies, sequencing, safety and motion of one trial after the other.
+#[derive(Debug)]
+pub struct Supervisor {
+    setup: Setup,
+    model: RobotModel,
+    protection: Protection,
+    drive: Drive,
+    mode: Mode,
+    trial: Option<Trial>,
+    strategy: StrategyKind,
+    pending_strategy: Option<StrategyKind>,
+    contact: Option<Contact>,
+    pass_began: Option<Stamp>,
+    last_tick: Option<Stamp>,
+    body: Option<BodyPose>,
+    view: Snapshot,
+    effects: Effects,
+}
+
+impl Supervisor {
+    /// A supervisor that has seen nothing yet and moves nothing.
+    ///
+    /// # Errors
+    /// Where a setting is not usable; the error names its key.
+    pub fn new(setup: Setup, model: RobotModel) -> Result<Self, SettingsError> {
+        setup.validate()?;
+        let mut supervisor = Self {
+            protection: Protection::new(&setup.settings)?,
+            strategy: setup.settings.strategy,
+            setup,
+            model,
+            drive: Drive::new(),
+            mode: Mode::Idle,
+            trial: None,
+            pending_strategy: None,
+            contact: None,
+            pass_began: None,
+            last_tick: None,
+            body: None,
+            view: Snapshot::default(),
+            effects: Effects::new(),
+        };
+        supervisor.prepare_view();
+        Ok(supervisor)
+    }
+
+    /// Takes one input at a moment and returns what is to be done, in order.
+    pub fn step(&mut self, now: Stamp, input: &Input) -> Effects {
+        self.view.now = now;
+        match input {
+            Input::Tick => self.tick(now),
+            Input::Endpoint(sample) => self.see_endpoint(now, sample),
+            Input::Joints(sample) => self.protection.see_joints(now, sample),
+            Input::Robot(state) => self.see_robot(now, state),
+            Input::Collision { side, active } => self.see_collision(now, *side, *active),
+            Input::Body(pose) => self.see_body(now, pose),
+            Input::Operator { command, origin } => self.obey(now, command, *origin),
+            Input::Link(event) => self.see_link(now, event),
+            Input::SetpointRefused { side, reason } => {
+                self.hold(now, &format!("the {side} arm's next position was refused: {reason}"));
+            }
+        }
+        std::mem::take(&mut self.effects)
+    }
+
+    fn tick(&mut self, now: Stamp) {
+        let span = self.last_tick.replace(now).map_or(std::time::Duration::ZERO, |last| now.since(last));
+        let verdict = self.protection.judge(now, self.mode != Mode::Idle);
+        self.obey_verdict(now, &verdict);
+        if self.protection.stop().is_latched() {
+            self.repeat_stop(now);
+            return;
+        }
+        if self.mode == Mode::Running {
+            self.give_orders(now);
+        }
+        self.move_on(now, span);
+    }
+
+    fn obey_verdict(&mut self, now: Stamp, verdict: &Verdict) {
+        match verdict.reaction {
+            Reaction::Clear | Reaction::Advise => self.drive.set_ratio(1.0),
+            Reaction::Slow => self.drive.set_ratio(SLOW_RATIO),
+            Reaction::Hold => self.hold(now, &verdict.cause),
+            Reaction::Stop => self.stop(now, &verdict.cause, Outcome::SafetyStop),
+        }
+    }
+
+    /// Stops the robot: latches, asks the robot's switch, forgets the motion. Works in every state.
+    fn stop(&mut self, now: Stamp, cause: &str, outcome: Outcome) {
+        if self.protection.stop_mut().request(now, cause) {
+            self.ask_switch(now, SwitchRequest::Stop);
+            self.enter_stop(now, cause, outcome);
+        }
+    }
+
+    /// What a stop means in here, whoever asked for it.
+    fn enter_stop(&mut self, now: Stamp, cause: &str, outcome: Outcome) {
+        self.drive.drop_motion();
+        self.contact = None;
+        self.effects.push(Effect::Stopped { outcome, cause: cause.to_owned() });
+        self.log(now, Level::Error, "stop", format!("emergency stop (software): {cause}"));
+        self.show_stop(now, cause);
+        if self.mode != Mode::Idle {
+            self.mode = Mode::Held;
+        }
+    }
+
+    /// Until the robot confirms the stop, it is asked again at every tick.
+    fn repeat_stop(&mut self, now: Stamp) {
+        if self.protection.stop().needs_repeat(now) {
+            self.ask_switch(now, SwitchRequest::Stop);
+        }
+    }
+
+    /// Asks the robot's switch; the edge that follows is our own.
+    fn ask_switch(&mut self, now: Stamp, request: SwitchRequest) {
+        self.protection.watchdogs_mut().own_switching(now);
+        self.effects.push(Effect::Switch(request));
+    }
+
+    /// Brings the arms to a halt and keeps the robot enabled where it is. Without a trial there is nothing to hold.
+    fn hold(&mut self, now: Stamp, cause: &str) {
+        if self.mode != Mode::Running {
+            return;
+        }
+        self.mode = Mode::Held;
+        self.contact = None;
+        self.drive.halt();
+        self.log(now, Level::Warning, "supervisor", format!("hold: {cause}"));
+        self.show_hold(now, cause);
+    }
+
+    fn see_endpoint(&mut self, now: Stamp, sample: &EndpointSample) {
+        let detection = self.protection.see_endpoint(now, sample, &self.drive);
+        self.show_force(sample);
+        let Some(detection) = detection else { return };
+        let position = sample.pose.translation.vector.into();
+        let listens =
+            self.trial.as_ref().is_some_and(|trial| trial.arm() == sample.side && trial.listens_at(&position));
+        if self.mode == Mode::Running && listens && self.drive.phase() == drive::Phase::Moving {
+            self.contact = Some(Contact { position, resistance: detection.resistance });
+            self.drive.halt();
+        }
+    }
+
+    fn see_robot(&mut self, now: Stamp, state: &RobotState) {
+        let was_enabled = self.view.robot.state.is_some_and(|before| before.enabled);
+        let stopped_itself = self.protection.see_robot(now, state);
+        self.view.robot.state = Some(*state);
+        if let Some(cause) = stopped_itself {
+            let outcome = if state.source == StopSource::Fault { Outcome::Fault } else { Outcome::OperatorStop };
+            self.enter_stop(now, &cause, outcome);
+        }
+        self.show_stop_progress(now);
+        if was_enabled && !state.enabled {
+            // Motors are off: whatever was planned is void, and must not be taken up where the arms then are.
+            self.hold(now, "the robot was disabled");
+            self.drive.drop_motion();
+        }
+    }
+
+    fn see_collision(&mut self, now: Stamp, side: Side, active: bool) {
+        if self.protection.watchdogs_mut().collision(side, active) {
+            self.hold(
+                now,
+                &format!("the robot felt a contact on its {side} arm; by itself it would go on after two seconds"),
+            );
+        }
+    }
+
+    fn see_body(&mut self, now: Stamp, pose: &BodyPose) {
+        self.protection.see_body(now, pose);
+        self.body = Some(*pose);
+        self.show_body(now, pose);
+    }
+
+    fn see_link(&mut self, now: Stamp, event: &LinkEvent) {
+        match event {
+            LinkEvent::MasterLost => {
+                self.hold(now, "the ROS master does not answer: start roscore again, then continue")
+            }
+            LinkEvent::MasterBack => self.log(now, Level::Information, "link", "the ROS master is back".into()),
+            LinkEvent::ForeignPublisher { topic, node } => {
+                self.protection.watchdogs_mut().foreign_publisher(topic, node);
+                self.hold(now, &format!("{node} publishes on {topic}: end it, then continue"));
+            }
+            LinkEvent::WorkerLost { name } => {
+                self.stop(now, &format!("the part of valet called {name} died"), Outcome::Fault);
+            }
+            LinkEvent::InboxOverflow { lost } => {
+                self.view.dropped_samples += lost;
+                self.log(
+                    now,
+                    Level::Warning,
+                    "link",
+                    format!("{lost} messages were lost: this computer is overloaded"),
+                );
+            }
+            LinkEvent::RecorderFailed { reason } => {
+                self.hold(now, &format!("the trial is not recorded any more: {reason}"))
+            }
+            LinkEvent::ConsoleLost => self.hold(now, "the console is gone"),
+        }
+        self.show_link(event);
+    }
+
+    /// Where both grippers and all joints are, as long as that is fresh.
+    fn gripper(&self, now: Stamp, side: Side) -> Option<crate::geometry::Point> {
+        self.protection.gripper(now, side)
+    }
+
+    /// What may be seen now.
+    #[must_use]
+    pub fn snapshot(&self, now: Stamp) -> Snapshot {
+        self.draw_view(now)
+    }
+
+    /// True while a stop is latched.
+    #[must_use]
+    pub const fn is_stopped(&self) -> bool {
+        self.protection.stop().is_latched()
+    }
+
+    /// True where the robot has confirmed the stop that is latched.
+    #[must_use]
+    pub const fn stop_is_confirmed(&self) -> bool {
+        self.protection.stop().is_confirmed()
+    }
+
+    /// The strategies of both arms' trial, where one runs.
+    #[must_use]
+    pub const fn trial(&self) -> Option<&Trial> {
+        self.trial.as_ref()
+    }
+
+    fn log(&mut self, now: Stamp, level: Level, source: &str, text: String) {
+        self.show_log(now, level, source, &text);
+        self.effects.push(Effect::Log { level, text });
+    }
+
+    fn both_joints(&self, now: Stamp) -> Option<PerSide<crate::kinematics::JointVector>> {
+        self.drive.joints().or_else(|| self.protection.joints(now))
+    }
+}

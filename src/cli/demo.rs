@@ -1,11 +1,121 @@
-//! `valet demo`: the whole thing with a simulated robot and person (the default).
+//! `valet demo`: the whole thing with a simulated robot and person.
 
 use super::exit::Failure;
+use super::output::Output;
+use crate::headless::{Report, ScriptedOperator, TrialResult, VirtualTrial};
+use crate::sim::world::WorldSetup;
+use crate::snapshot::{Outcome, Watermark};
+use crate::strategy::StrategyKind;
+use crate::supervisor::Setup;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// How often a run without a screen goes on by itself after a hold before it gives the trial up.
+const CONTINUES: u32 = 10;
+/// No trial of the thesis took longer than 195 s (table 4.2); both arms with every pass of the maximum stay below this.
+const LONGEST_TRIAL: Duration = Duration::from_secs(3600);
 
 /// The whole thing with a simulated robot and person (the default).
-#[derive(Debug, Default, clap::Args)]
-pub(super) struct Arguments {}
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct Arguments {
+    /// Run without a screen: virtual time, one process, done in seconds.
+    #[arg(long)]
+    pub(super) headless: bool,
+    /// With --headless: take the way over TCPROS, in real time.
+    #[arg(long, requires = "headless")]
+    pub(super) ros: bool,
+    /// Seed of everything random; it is printed and recorded.
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// The person: a name or a file.
+    #[arg(long)]
+    pub(super) profile: Option<String>,
+    /// The strategy that the trial begins with.
+    #[arg(long)]
+    pub(super) strategy: Option<String>,
+    /// How many trials to run, with consecutive seeds.
+    #[arg(long, default_value_t = 1)]
+    pub(super) trials: u32,
+    /// Print one JSON object a line.
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Record the trial into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(super) record: Option<PathBuf>,
+}
 
-pub(super) fn run(_arguments: &Arguments) -> Result<(), Failure> {
-    Err(Failure::Fault("demo: not built yet".into()))
+impl Default for Arguments {
+    fn default() -> Self {
+        Self {
+            headless: false,
+            ros: false,
+            seed: 1,
+            profile: None,
+            strategy: None,
+            trials: 1,
+            json: false,
+            record: None,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.headless && !arguments.ros {
+        return run_in_virtual_time(arguments);
+    }
+    Err(Failure::Fault("the demo over ROS is not built yet".into()))
+}
+
+fn run_in_virtual_time(arguments: &Arguments) -> Result<(), Failure> {
+    let mut output = Output::new(arguments.json);
+    let mut last = None;
+    for trial in 0..arguments.trials {
+        let seed = arguments.seed + u64::from(trial);
+        last = Some(run_one(arguments, seed, &mut output)?);
+    }
+    last.map_or(Ok(()), |result| verdict(&result))
+}
+
+fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<TrialResult, Failure> {
+    let strategy = chosen_strategy(arguments)?;
+    let mut setup = Setup { seed, watermark: Watermark::Demo, ..Setup::default() };
+    setup.settings.strategy = strategy;
+    let world = WorldSetup { seed, ..WorldSetup::default() };
+    output.line(format!("seed {seed}, strategy {strategy}"))?;
+    let mut trial = VirtualTrial::new(setup, &world).map_err(Failure::configuration)?;
+    let mut operator = ScriptedOperator::new(CONTINUES);
+    let mut printed = Ok(());
+    let result = trial.run(&mut operator, LONGEST_TRIAL, |now, _, effects| {
+        for report in effects.iter().filter_map(Report::of) {
+            if printed.is_ok() {
+                printed = print_report(output, &report, now.seconds());
+            }
+        }
+    });
+    printed?;
+    output.line(format!("the trial is {}: {}", result.outcome.words(), result.reason))?;
+    output.event(&result.event(strategy.name(), seed, trial.trial_seconds()))?;
+    Ok(result)
+}
+
+fn print_report(output: &mut Output, report: &Report, seconds: f64) -> Result<(), Failure> {
+    output.line(format!("{seconds:8.2} s  {}", report.sentence))?;
+    report.event.as_ref().map_or(Ok(()), |event| output.event(event))
+}
+
+fn chosen_strategy(arguments: &Arguments) -> Result<StrategyKind, Failure> {
+    let Some(name) = &arguments.strategy else { return Ok(StrategyKind::Force) };
+    let names: Vec<_> = StrategyKind::ALL.iter().map(|kind| kind.name()).collect();
+    let found = StrategyKind::ALL.into_iter().find(|kind| kind.name() == name);
+    found.ok_or_else(|| Failure::Configuration(format!("--strategy {name} is none of {}", names.join(", "))))
+}
+
+fn verdict(result: &TrialResult) -> Result<(), Failure> {
+    let reason = result.reason.clone();
+    match result.outcome {
+        Outcome::Completed => Ok(()),
+        Outcome::Aborted | Outcome::OperatorStop => Err(Failure::OperatorStop(reason)),
+        Outcome::SafetyStop => Err(Failure::SafetyStop(reason)),
+        Outcome::Fault => Err(Failure::Fault(reason)),
+    }
 }

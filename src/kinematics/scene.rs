@@ -92,9 +92,10 @@ pub struct BodyBuild {
 }
 
 impl Default for BodyBuild {
-    /// Arm radii as in limb tables (PMC2784227: 0.041 to 0.048 m), head and trunk of a middle-sized adult.
+    /// Arm radii as in limb tables (PMC2784227: 0.041 to 0.048 m); the trunk is as thick as half a median chest is
+    /// deep (ANSUR II: 211 mm for slim to 253 mm for median men, 240 mm for median women), because a gripper comes to the shoulder from behind; head of a middle-sized adult.
     fn default() -> Self {
-        Self { forearm: 0.045, upper_arm: 0.048, trunk: 0.13, trunk_length: 0.55, head: 0.12, head_height: 0.17 }
+        Self { forearm: 0.045, upper_arm: 0.048, trunk: 0.11, trunk_length: 0.55, head: 0.12, head_height: 0.17 }
     }
 }
 
@@ -142,10 +143,15 @@ fn limb(name: &str, from: &JointEstimate, to: &JointEstimate, radius: f64) -> Bo
     BodyPart { name: name.into(), shape: Capsule { start: from.position, end: to.position, radius } }
 }
 
+/// The trunk is as deep as a chest from the armpits down, in metres below the neck: armpits lie 0.10 m below the shoulder
+/// (ANSUR II, acromion above armpit, 96 to 111 mm in the middle), and the shoulders 0.09 m below the neck. Above it narrows
+/// to the neck, and a gripper that brings the garment onto a shoulder must come by.
+const ARMPIT_BELOW_NECK: f64 = 0.19;
+
 /// The person sits or stands upright: trunk and head are vertical below and above the neck.
 fn trunk_and_head(neck: &JointEstimate, build: &BodyBuild) -> [BodyPart; 2] {
     let extra = uncertainty(neck);
-    let top = neck.position - Vector::z() * build.trunk;
+    let top = neck.position - Vector::z() * ARMPIT_BELOW_NECK;
     let trunk = Capsule { start: top, end: top - Vector::z() * build.trunk_length, radius: build.trunk + extra };
     let head = Capsule::sphere(neck.position + Vector::z() * build.head_height, build.head + extra);
     [

@@ -32,6 +32,13 @@ pub enum Effect {
     },
     /// Ask something of the robot's switch.
     Switch(SwitchRequest),
+    /// A stop was latched.
+    Stopped {
+        /// Whether the operator, a safety verdict or a fault stopped.
+        outcome: Outcome,
+        /// Who or what, in words.
+        cause: String,
+    },
     /// Answer to a command.
     Receipt(CommandReceipt),
     /// A line for the log.

@@ -1,0 +1,268 @@
+//! The threads round the core: a 100 Hz supervisor, and a stop that depends on none of it.
+//!
+//! The engine gives the core its time, hands it the inputs in the order in which they came, and carries its effects out
+//! through an [`Outlet`]. It decides nothing.
+
+pub mod stop;
+
+use crate::body::Side;
+use crate::command::{Command, Origin};
+use crate::kinematics::JointVector;
+use crate::snapshot::Snapshot;
+use crate::supervisor::{Effect, Input, LinkEvent, Supervisor};
+use crate::time::Stamp;
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, PoisonError, RwLock};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use stop::StopLatch;
+
+/// The supervisor's beat: the rate of the robot's wrench and joint topics (thesis section 4.4.2).
+const TICK: Duration = Duration::from_millis(10);
+/// How often a snapshot is made: what a screen can draw.
+const SNAPSHOT: Duration = Duration::from_millis(33);
+/// Inputs that may wait: a second's worth of everything a robot sends (two wrenches, joints, state at 100 Hz, and poses).
+const INBOX: usize = 512;
+
+/// Carries effects out. Nothing here may block: the supervisor waits for it.
+pub trait Outlet: Send {
+    /// Sends joint positions to an arm, or refuses them with the reason.
+    ///
+    /// # Errors
+    /// The guard's words, where it refuses.
+    fn setpoint(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Result<(), String>;
+    /// Sends nothing more to an arm.
+    fn release(&mut self, side: Side);
+    /// Asks something of the robot's switch.
+    fn switch(&mut self, request: crate::assembly::SwitchRequest);
+    /// Shows a snapshot to other nodes.
+    fn show(&mut self, snapshot: &Snapshot);
+    /// Is told every step: what came in, and what was decided.
+    fn record(&mut self, now: Stamp, input: &Input, effects: &[Effect]);
+}
+
+/// Where inputs go. Cheap to clone; never blocks, counts what it loses.
+#[derive(Clone, Debug)]
+pub struct Inbox {
+    sender: Sender<Input>,
+    lost: Arc<AtomicU64>,
+}
+
+impl Inbox {
+    /// Puts an input into the inbox; where that is full, the input is lost and counted.
+    pub fn offer(&self, input: Input) {
+        if let Err(TrySendError::Full(_)) = self.sender.try_send(input) {
+            self.lost.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+}
+
+/// The newest snapshot, shared with whoever shows it.
+#[derive(Clone, Debug, Default)]
+pub struct SharedSnapshot(Arc<RwLock<Arc<Snapshot>>>);
+
+impl SharedSnapshot {
+    /// The newest snapshot.
+    #[must_use]
+    pub fn newest(&self) -> Arc<Snapshot> {
+        Arc::clone(&self.0.read().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn replace(&self, snapshot: Snapshot) {
+        *self.0.write().unwrap_or_else(PoisonError::into_inner) = Arc::new(snapshot);
+    }
+}
+
+/// The running supervisor. Dropping it ends its thread; the arms then hold by the robot's own time-out.
+#[derive(Debug)]
+pub struct Engine {
+    inbox: Inbox,
+    snapshots: SharedSnapshot,
+    effects: Receiver<Effect>,
+    ended: Arc<AtomicBool>,
+    handle: Option<JoinHandle<()>>,
+}
+
+/// What the supervisor's thread owns.
+struct Worker {
+    supervisor: Supervisor,
+    outlet: Box<dyn Outlet>,
+    latch: StopLatch,
+    inputs: Receiver<Input>,
+    lost: Arc<AtomicU64>,
+    snapshots: SharedSnapshot,
+    told: Sender<Effect>,
+    ended: Arc<AtomicBool>,
+    clock: Clock,
+}
+
+/// The time of day at the start, carried on by a clock that never jumps.
+#[derive(Clone, Copy, Debug)]
+struct Clock {
+    wall: Duration,
+    start: Instant,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { wall: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default(), start: Instant::now() }
+    }
+
+    fn now(&self) -> Stamp {
+        Stamp::ZERO + self.wall + self.start.elapsed()
+    }
+}
+
+impl Engine {
+    /// Starts the supervisor's thread.
+    ///
+    /// # Errors
+    /// Where the system has no thread to give.
+    pub fn start(supervisor: Supervisor, outlet: Box<dyn Outlet>, latch: StopLatch) -> std::io::Result<Self> {
+        let (sender, inputs) = bounded(INBOX);
+        let (told, effects) = bounded(INBOX);
+        let lost = Arc::new(AtomicU64::new(0));
+        let snapshots = SharedSnapshot::default();
+        let ended = Arc::new(AtomicBool::new(false));
+        let worker = Worker {
+            supervisor,
+            outlet,
+            latch: latch.clone(),
+            inputs,
+            lost: Arc::clone(&lost),
+            snapshots: snapshots.clone(),
+            told,
+            ended: Arc::clone(&ended),
+            clock: Clock::start(),
+        };
+        let handle = thread::Builder::new().name("supervisor".into()).spawn(move || {
+            // Whatever ends this thread other than the engine itself must stop the robot: the guard does it on unwinding.
+            let guard = StopOnUnwind(latch);
+            worker.run();
+            drop(guard);
+        })?;
+        Ok(Self { inbox: Inbox { sender, lost }, snapshots, effects, ended, handle: Some(handle) })
+    }
+
+    /// Where inputs go.
+    #[must_use]
+    pub fn inbox(&self) -> Inbox {
+        self.inbox.clone()
+    }
+
+    /// The newest snapshot, for screens.
+    #[must_use]
+    pub fn snapshots(&self) -> SharedSnapshot {
+        self.snapshots.clone()
+    }
+
+    /// Decisions for whoever tells of them, setpoints left out; those that nobody takes in time are dropped.
+    #[must_use]
+    pub const fn effects(&self) -> &Receiver<Effect> {
+        &self.effects
+    }
+}
+
+impl Drop for Engine {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::SeqCst);
+        if let Some(handle) = self.handle.take() {
+            // A panic of the thread has stopped the robot already.
+            let _ = handle.join();
+        }
+    }
+}
+
+struct StopOnUnwind(StopLatch);
+
+impl Drop for StopOnUnwind {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.stop();
+        }
+    }
+}
+
+impl Worker {
+    fn run(mut self) {
+        let mut next_tick = Instant::now() + TICK;
+        let mut next_snapshot = Instant::now();
+        while !self.ended.load(Ordering::SeqCst) {
+            match self.inputs.recv_deadline(next_tick) {
+                Ok(input) => self.step(&input),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            let now = Instant::now();
+            if now >= next_tick {
+                self.poll_latch();
+                self.report_losses();
+                self.step(&Input::Tick);
+                // After a long pause the missed beats are not made up for: the arms must not hurry.
+                next_tick = (next_tick + TICK).max(now);
+            }
+            if now >= next_snapshot {
+                let snapshot = self.supervisor.snapshot(self.clock.now());
+                self.outlet.show(&snapshot);
+                self.snapshots.replace(snapshot);
+                next_snapshot = now + SNAPSHOT;
+            }
+        }
+    }
+
+    /// A stop that came past the supervisor, straight from a key: it is told.
+    fn poll_latch(&mut self) {
+        if self.latch.is_stopped() && !self.supervisor.is_stopped() {
+            self.step(&Input::Operator { command: Command::Stop, origin: Origin::OperatorKey });
+        }
+    }
+
+    fn report_losses(&mut self) {
+        let lost = self.lost.swap(0, Ordering::Relaxed);
+        if lost > 0 {
+            self.step(&Input::Link(LinkEvent::InboxOverflow { lost }));
+        }
+    }
+
+    fn step(&mut self, input: &Input) {
+        let now = self.clock.now();
+        let was_stopped = self.supervisor.is_stopped();
+        let effects = self.supervisor.step(now, input);
+        self.follow_stop(was_stopped);
+        self.outlet.record(now, input, &effects);
+        for effect in effects {
+            self.carry_out(now, effect);
+        }
+    }
+
+    /// Keeps the latch in step with the supervisor, in both directions.
+    fn follow_stop(&mut self, was_stopped: bool) {
+        match (was_stopped, self.supervisor.is_stopped()) {
+            (false, true) => self.latch.stop(),
+            (true, false) => self.latch.clear(),
+            _ => {}
+        }
+        if self.supervisor.stop_is_confirmed() {
+            self.latch.confirm();
+        }
+    }
+
+    fn carry_out(&mut self, now: Stamp, effect: Effect) {
+        match effect {
+            // The latch may have been set since the supervisor decided: nothing moves any more.
+            Effect::Setpoint { .. } if self.latch.is_stopped() => {}
+            Effect::Setpoint { side, joints } => {
+                if let Err(reason) = self.outlet.setpoint(now, side, &joints) {
+                    self.step(&Input::SetpointRefused { side, reason });
+                }
+            }
+            Effect::Release { side } => self.outlet.release(side),
+            Effect::Switch(request) => self.outlet.switch(request),
+            told => {
+                // Telling is best effort; the record has it all.
+                let _ = self.told.try_send(told);
+            }
+        }
+    }
+}

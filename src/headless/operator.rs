@@ -1,0 +1,128 @@
+//! The operator of a run without a screen: resets, enables, starts, and gives each go-ahead, one act at a time.
+//!
+//! It asks for nothing that an operator could not ask for, and waits for the answer to each act before the next one.
+
+use crate::assembly::RobotState;
+use crate::command::Command;
+use crate::snapshot::{Snapshot, TrialPhase};
+use crate::time::Stamp;
+use std::time::Duration;
+
+/// Time between two acts: what a person needs to read what has changed.
+const PAUSE: Duration = Duration::from_millis(500);
+
+/// A script in place of a person.
+#[derive(Clone, Debug)]
+pub struct ScriptedOperator {
+    last_act: Option<Stamp>,
+    continues_left: u32,
+    started: bool,
+}
+
+impl ScriptedOperator {
+    /// An operator that goes on after at most `continues` holds, and then gives the trial up.
+    #[must_use]
+    pub const fn new(continues: u32) -> Self {
+        Self { last_act: None, continues_left: continues, started: false }
+    }
+
+    /// What the operator does on seeing this, if anything.
+    pub fn act(&mut self, seen: &Snapshot) -> Option<Command> {
+        if self.last_act.is_some_and(|last| seen.now.since(last) < PAUSE) {
+            return None;
+        }
+        let command = self.choose(seen)?;
+        self.last_act = Some(seen.now);
+        Some(command)
+    }
+
+    fn choose(&mut self, seen: &Snapshot) -> Option<Command> {
+        if seen.stop.latched {
+            // Whoever stopped had a reason: a script does not go on after a stop.
+            return None;
+        }
+        match seen.trial.phase {
+            TrialPhase::Idle => self.prepare(seen),
+            TrialPhase::Waiting => Some(Command::GoAhead),
+            TrialPhase::Holding => Some(self.after_hold()),
+            _ => None,
+        }
+    }
+
+    fn prepare(&mut self, seen: &Snapshot) -> Option<Command> {
+        let robot: &RobotState = seen.robot.fresh(seen.now)?;
+        if robot.stopped || robot.error {
+            return Some(Command::Reset);
+        }
+        if !robot.enabled {
+            return Some(Command::Enable);
+        }
+        if self.started && seen.newest_receipt().is_some_and(crate::command::CommandReceipt::is_accepted) {
+            return None;
+        }
+        seen.body.pose?;
+        self.started = true;
+        Some(Command::Start)
+    }
+
+    const fn after_hold(&mut self) -> Command {
+        if self.continues_left == 0 {
+            return Command::Abort;
+        }
+        self.continues_left -= 1;
+        Command::Continue
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::BodyPose;
+    use crate::snapshot::RobotView;
+
+    fn at(milliseconds: u64, phase: TrialPhase, enabled: bool) -> Snapshot {
+        let now = Stamp::from_nanoseconds(milliseconds * 1_000_000);
+        let mut seen = Snapshot { now, ..Snapshot::default() };
+        seen.trial.phase = phase;
+        seen.robot = RobotView {
+            state: Some(RobotState { stamp: now, enabled, ..RobotState::default() }),
+            deadline_seconds: 0.1,
+        };
+        seen.body.pose = Some(BodyPose::default());
+        seen
+    }
+
+    #[test]
+    fn enable_and_start_are_two_acts_with_a_pause_between() {
+        let mut operator = ScriptedOperator::new(0);
+        assert_eq!(operator.act(&at(1000, TrialPhase::Idle, false)), Some(Command::Enable));
+        assert_eq!(operator.act(&at(1010, TrialPhase::Idle, true)), None);
+        assert_eq!(operator.act(&at(1600, TrialPhase::Idle, true)), Some(Command::Start));
+    }
+
+    #[test]
+    fn without_a_fresh_robot_nothing_is_asked() {
+        let mut seen = at(1000, TrialPhase::Idle, true);
+        seen.now = Stamp::from_nanoseconds(2_000_000_000);
+        assert_eq!(ScriptedOperator::new(0).act(&seen), None);
+    }
+
+    #[test]
+    fn holds_are_continued_a_limited_number_of_times() {
+        let mut operator = ScriptedOperator::new(1);
+        assert_eq!(operator.act(&at(1000, TrialPhase::Holding, true)), Some(Command::Continue));
+        assert_eq!(operator.act(&at(2000, TrialPhase::Holding, true)), Some(Command::Abort));
+    }
+
+    #[test]
+    fn a_script_does_not_go_on_after_a_stop() {
+        let mut seen = at(1000, TrialPhase::Stopped, false);
+        seen.stop.latched = true;
+        assert_eq!(ScriptedOperator::new(9).act(&seen), None);
+    }
+
+    #[test]
+    fn waiting_is_answered_with_a_go_ahead() {
+        assert_eq!(ScriptedOperator::new(0).act(&at(1000, TrialPhase::Waiting, true)), Some(Command::GoAhead));
+    }
+}

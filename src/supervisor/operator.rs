@@ -1,0 +1,296 @@
+//! What the operator asks: carried out, or refused with the reason and with what would help.
+
+use super::{Effect, Mode, Supervisor};
+use crate::assembly::SwitchRequest;
+use crate::body::{Joint, PerSide, Side};
+use crate::command::{Command, CommandReceipt, Origin};
+use crate::geometry::Point;
+use crate::kinematics::RobotModel;
+use crate::sequencing::{Next, PersonPlan, Stage, Trial};
+use crate::snapshot::{Level, Outcome};
+use crate::strategy::{self, ArmContext, Strategy, StrategyKind};
+use crate::time::Stamp;
+
+/// What a command comes to: when it takes effect, or why it is refused.
+type Answer = Result<String, String>;
+
+impl Supervisor {
+    /// Obeys a command, or refuses it, and answers with a receipt in either case.
+    pub(super) fn obey(&mut self, now: Stamp, command: &Command, origin: Origin) {
+        let answer = match origin {
+            Origin::RosService if !matches!(command, Command::Stop | Command::Hold) => {
+                Err("another node may stop and hold, nothing else".to_owned())
+            }
+            _ => self.answer(now, command),
+        };
+        let receipt = match answer {
+            Ok(effective) => CommandReceipt::accepted(command.clone(), effective),
+            Err(reason) => CommandReceipt::refused(command.clone(), reason),
+        };
+        self.show_receipt(now, origin, &receipt);
+        self.effects.push(Effect::Receipt(receipt));
+    }
+
+    fn answer(&mut self, now: Stamp, command: &Command) -> Answer {
+        match command {
+            Command::Stop => {
+                self.stop(now, "the operator", Outcome::OperatorStop);
+                Ok("now".into())
+            }
+            Command::Hold => self.obey_hold(now),
+            Command::Continue => self.obey_continue(now),
+            Command::Abort => self.obey_abort(now),
+            Command::Withdraw => self.obey_withdraw(now),
+            Command::GoAhead | Command::NextIteration | Command::NextStep => self.obey_go_ahead(now),
+            Command::PreviousStep => Err("a step is undone by withdrawing the garment: hold, then withdraw".into()),
+            Command::FinishAfterThis => self.obey_finish(),
+            Command::Reset => self.obey_reset(now),
+            Command::Enable => self.obey_enable(now),
+            Command::Disable => self.obey_disable(now),
+            Command::Start => self.obey_start(now),
+            Command::SelectStrategy(kind) => self.obey_strategy(now, *kind),
+            Command::SelectFirstArm(side) => self.obey_first_arm(*side),
+            Command::SetSetting { key, value } => self.obey_setting(now, key, *value),
+            Command::UndoSetting { key } => self.obey_undo(now, key),
+            Command::Tare(side) => self.obey_tare(now, *side),
+            Command::Note(text) => {
+                self.log(now, Level::Information, "note", text.clone());
+                Ok("written down".into())
+            }
+            Command::SelectProfile(_) | Command::SelectGarment(_) => {
+                Err("profile and garment are chosen when valet is started: --profile".into())
+            }
+            Command::RecordMovement { .. } | Command::SignCheck(_) | Command::SetRecording(_) => {
+                self.obey_shell(now, command)
+            }
+        }
+    }
+
+    fn obey_hold(&mut self, now: Stamp) -> Answer {
+        match self.mode {
+            Mode::Running => {
+                self.hold(now, "the operator");
+                Ok("now".into())
+            }
+            Mode::Held => Ok("it holds already".into()),
+            Mode::Idle => Err("no trial runs: nothing moves".into()),
+        }
+    }
+
+    /// What every motion needs; the words say what is missing and what to do.
+    fn may_move(&self, now: Stamp) -> Result<(), String> {
+        self.protection.readiness(now)
+    }
+
+    fn obey_continue(&mut self, now: Stamp) -> Answer {
+        if self.mode != Mode::Held {
+            return Err("nothing is held".into());
+        }
+        self.may_move(now)?;
+        self.protection.watchdogs_mut().acknowledge();
+        self.mode = Mode::Running;
+        self.log(now, Level::Information, "operator", "the trial goes on".into());
+        self.show_continue(now);
+        Ok("now".into())
+    }
+
+    fn obey_abort(&mut self, now: Stamp) -> Answer {
+        if self.mode == Mode::Idle {
+            return Err("no trial runs".into());
+        }
+        self.end_trial(now, Outcome::Aborted, "the operator gave it up; the arms stay where they are");
+        Ok("now".into())
+    }
+
+    fn obey_withdraw(&mut self, now: Stamp) -> Answer {
+        if self.mode != Mode::Held {
+            return Err("hold first: the garment is withdrawn from a hold".into());
+        }
+        self.may_move(now)?;
+        let place = self.trial.as_ref().and_then(|trial| self.gripper(now, trial.arm()));
+        let (Some(place), Some(trial)) = (place, self.trial.as_mut()) else {
+            return Err("the gripper's position is not known".into());
+        };
+        trial.withdraw(place);
+        self.protection.watchdogs_mut().acknowledge();
+        self.mode = Mode::Running;
+        self.log(now, Level::Information, "operator", "the garment is withdrawn along the travelled path".into());
+        self.show_continue(now);
+        Ok("now, slowly".into())
+    }
+
+    fn obey_go_ahead(&mut self, now: Stamp) -> Answer {
+        let stage = self.trial.as_ref().map(Trial::stage).cloned();
+        let (Mode::Running, Some(Stage::AwaitGoAhead(next))) = (&self.mode, stage) else {
+            return Err("the trial does not wait for a go-ahead".into());
+        };
+        self.may_move(now)?;
+        if next == Next::SecondArm {
+            self.prepare_second_arm()?;
+        }
+        let events = self.trial.as_mut().map_or_else(|| Ok(Vec::new()), Trial::go_ahead);
+        self.follow(now, events);
+        Ok("now".into())
+    }
+
+    /// The second arm has moved since the trial began: its path is laid out anew from where it is now.
+    fn prepare_second_arm(&mut self) -> Result<(), String> {
+        let Some(side) = self.trial.as_ref().map(|trial| trial.arm().other()) else { return Ok(()) };
+        let joints = self.arm_joints(side)?;
+        let strategy = self.build_strategy(side, self.strategy, joints)?;
+        if let Some(trial) = self.trial.as_mut() {
+            trial.lay_out(side, joints, strategy);
+        }
+        Ok(())
+    }
+
+    fn obey_finish(&mut self) -> Answer {
+        let trial = self.trial.as_mut().ok_or("no trial runs")?;
+        trial.finish_after_this();
+        Ok("at the end of this iteration".into())
+    }
+
+    fn obey_reset(&mut self, now: Stamp) -> Answer {
+        let robot = self.protection.robot(now).copied();
+        self.protection.stop_mut().reset(now, robot.as_ref())?;
+        self.ask_switch(now, SwitchRequest::Reset);
+        self.log(now, Level::Information, "operator", "reset: the robot stays disabled until Enable".into());
+        Ok("now; nothing moves before Enable and Start".into())
+    }
+
+    fn obey_enable(&mut self, now: Stamp) -> Answer {
+        let robot = self.protection.robot(now).copied();
+        self.protection.stop_mut().enable(now, robot.as_ref())?;
+        self.ask_switch(now, SwitchRequest::Enable);
+        self.log(
+            now,
+            Level::Information,
+            "operator",
+            "enable: the motors are switched on; nothing moves before Start".into(),
+        );
+        Ok("now; nothing moves before Start".into())
+    }
+
+    fn obey_disable(&mut self, now: Stamp) -> Answer {
+        self.hold(now, "the operator disables the robot");
+        self.drive.drop_motion();
+        self.ask_switch(now, SwitchRequest::Disable);
+        Ok("now; the arms sink".into())
+    }
+
+    fn obey_start(&mut self, now: Stamp) -> Answer {
+        let robot = self.protection.robot(now).copied();
+        if self.mode == Mode::Running {
+            return Err("a trial runs already".into());
+        }
+        self.protection.stop_mut().start(now, robot.as_ref())?;
+        self.show_stop_progress(now);
+        if self.mode == Mode::Held {
+            self.show_hold(now, "after a stop: continue, withdraw or abort");
+            return Ok("the stop is over; the trial holds: continue, withdraw or abort".into());
+        }
+        self.may_move(now)?;
+        let plan =
+            PersonPlan { arms: PerSide { left: self.arm_joints(Side::Left)?, right: self.arm_joints(Side::Right)? } };
+        let strategies = PerSide {
+            left: self.build_strategy(Side::Left, self.strategy, plan.arms.left)?,
+            right: self.build_strategy(Side::Right, self.strategy, plan.arms.right)?,
+        };
+        self.trial = Some(Trial::new(self.setup.settings.trial.clone(), plan, strategies));
+        self.mode = Mode::Running;
+        self.protection.watchdogs_mut().acknowledge();
+        self.log(now, Level::Information, "trial", format!("the trial begins with the {} strategy", self.strategy));
+        self.show_start(now);
+        Ok("now".into())
+    }
+
+    /// Hand, elbow and shoulder of one of the person's arms, as they are seen now.
+    fn arm_joints(&self, side: Side) -> Result<[Point; 3], String> {
+        let arm = self.body.as_ref().map(|body| body.arms.get(side));
+        let place = |joint: Joint| {
+            arm.and_then(|arm| arm.position(joint)).ok_or_else(|| {
+                format!("the person's {side} {joint} is not seen: clear the camera's view, or ask the person to move a little")
+            })
+        };
+        Ok([place(Joint::Hand)?, place(Joint::Elbow)?, place(Joint::Shoulder)?])
+    }
+
+    fn build_strategy(&self, side: Side, kind: StrategyKind, joints: [Point; 3]) -> Result<Box<dyn Strategy>, String> {
+        let space = self.setup.space.as_ref().map(|space| space.arms.get(side).clone());
+        let context = ArmContext { initial: joints, space, seed: self.setup.seed };
+        strategy::build(kind, &self.setup.settings.strategies, &context).map_err(|error| error.to_string())
+    }
+
+    fn obey_strategy(&mut self, now: Stamp, kind: StrategyKind) -> Answer {
+        let Some(trial) = self.trial.as_ref() else {
+            self.strategy = kind;
+            self.show_strategy(now);
+            return Ok("with the next trial".into());
+        };
+        // A strategy that cannot work here is refused now, not at the safe point.
+        self.build_strategy(trial.arm(), kind, self.arm_joints(trial.arm())?)?;
+        let between_passes = trial.is_between_passes();
+        self.pending_strategy = Some(kind);
+        self.show_strategy(now);
+        if between_passes {
+            self.take_up_pending_strategy(now);
+            return Ok("now".into());
+        }
+        Ok("when this pass of the garment has ended".into())
+    }
+
+    /// Puts a strategy that was chosen into the place of the present one, where the trial is between two passes.
+    pub(super) fn take_up_pending_strategy(&mut self, now: Stamp) {
+        let Some(kind) = self.pending_strategy else { return };
+        let Some(trial) = self.trial.as_ref().filter(|trial| trial.is_between_passes()) else { return };
+        self.pending_strategy = None;
+        let side = trial.arm();
+        let learned = trial.strategy(side).learned();
+        let joints = self.trial.as_ref().map(|trial| trial.joints(side));
+        let built = joints.ok_or_else(String::new).and_then(|joints| self.build_strategy(side, kind, joints));
+        match built {
+            Ok(mut strategy) => {
+                let dropped = strategy.adopt(&learned);
+                self.strategy = kind;
+                if let Some(trial) = self.trial.as_mut() {
+                    trial.replace_strategy(side, strategy);
+                }
+                let dropped = if dropped.is_empty() { "nothing is dropped".to_owned() } else { dropped.join("; ") };
+                self.log(now, Level::Information, "strategy", format!("now {kind}: the path is kept, {dropped}"));
+            }
+            Err(reason) => self.log(now, Level::Warning, "strategy", format!("{kind} was not taken up: {reason}")),
+        }
+        self.show_strategy(now);
+    }
+
+    fn obey_first_arm(&mut self, side: Side) -> Answer {
+        if self.mode != Mode::Idle {
+            return Err("the first arm is chosen before a trial".into());
+        }
+        self.setup.settings.trial.first_arm = side;
+        self.show_steps();
+        Ok("with the next trial".into())
+    }
+
+    fn obey_tare(&mut self, now: Stamp, side: Side) -> Answer {
+        if self.mode == Mode::Running && self.drive.phase() != super::drive::Phase::Holding {
+            return Err("an arm moves: tare only while both stand still".into());
+        }
+        self.protection.tare(now, side).map(|zero| format!("now: zero is {:.1} {:.1} {:.1} N", zero.x, zero.y, zero.z))
+    }
+
+    /// Commands that the shell around the core carries out: it sees the receipt and acts.
+    fn obey_shell(&mut self, now: Stamp, command: &Command) -> Answer {
+        if self.mode == Mode::Running && matches!(command, Command::RecordMovement { .. }) {
+            return Err("the person's movement is recorded while no trial runs".into());
+        }
+        let _ = now;
+        Ok("now".into())
+    }
+
+    /// The robot model that motions are planned with.
+    #[must_use]
+    pub const fn model(&self) -> &RobotModel {
+        &self.model
+    }
+}

@@ -1,0 +1,173 @@
+//! A trial that runs: orders become motions, arrivals and contacts go back to the trial.
+
+use super::drive::{Arrival, Phase};
+use super::{Effect, Mode, Supervisor};
+use crate::body::{PerSide, Side};
+use crate::geometry::Point;
+use crate::kinematics::{
+    JointVector, MotionRefusal, PairMotion, Scene, Target, dressing_orientation, plan_pair, plan_postures,
+    start_postures,
+};
+use crate::sequencing::{Order, Stage, Trial, TrialEvent};
+use crate::snapshot::{Level, Outcome};
+use crate::strategy::StrategyError;
+use crate::time::Stamp;
+use std::time::Duration;
+
+/// On the way to the start posture nobody wears the garment, and joints do not lead the grippers along straight lines: they
+/// may be this much further apart then, in metres. No other rule is relaxed.
+const APPROACH_SLACK: f64 = 0.15;
+
+impl Supervisor {
+    /// Starts the motion that the trial asks for, where none is under way.
+    pub(super) fn give_orders(&mut self, now: Stamp) {
+        if self.drive.phase() != Phase::Holding {
+            return;
+        }
+        let Some(Order::Move { targets, least_seconds }) = self.trial.as_ref().map(Trial::order) else {
+            return;
+        };
+        let Some(start) = self.both_joints(now) else {
+            self.hold(now, "the positions of the robot's joints are not known");
+            return;
+        };
+        match self.plan(&start, &targets, least_seconds) {
+            Ok(motion) => {
+                self.protection.motion_begins();
+                self.drive.start(motion);
+                self.show_motion(now);
+            }
+            Err(refusal) => self.hold(now, &format!("the next move is not possible: {refusal}")),
+        }
+    }
+
+    /// The motion that an order asks for: to the start posture at first, in straight lines after that.
+    fn plan(
+        &self,
+        start: &PerSide<JointVector>,
+        targets: &PerSide<Option<Point>>,
+        least_seconds: f64,
+    ) -> Result<PairMotion, MotionRefusal> {
+        let mut limits = self.setup.settings.motion.clone();
+        limits.minimum_duration = Duration::try_from_secs_f64(least_seconds).unwrap_or_default();
+        let scene = self.scene();
+        let trial = self.trial.as_ref();
+        if let Some(trial) = trial.filter(|trial| matches!(trial.stage(), Stage::StandBack)) {
+            let orientations = PerSide::from_fn(|_| dressing_orientation());
+            limits.maximum_gripper_distance += APPROACH_SLACK;
+            let posture = start_postures(&self.model, &scene, &trial.stages(), &orientations, &limits)?;
+            return plan_postures(&self.model, &scene, start, &posture.map(|_, joints| Some(*joints)), &limits);
+        }
+        let targets = targets.map(|_, place| place.map(Target::position));
+        plan_pair(&self.model, &scene, start, &targets, &limits)
+    }
+
+    /// What the arms keep away from: the person as seen, but for the arms that the garment is led along.
+    fn scene(&self) -> Scene {
+        let Some(body) = self.body.as_ref() else { return Scene::default() };
+        let first = self.setup.settings.trial.first_arm;
+        let arm = self.trial.as_ref().map_or(first, Trial::arm);
+        Scene::around(body, &self.setup.build, &PerSide::from_fn(|side| side == arm || side == first))
+    }
+
+    /// Samples the motion, sends what comes of it and reports arrivals.
+    pub(super) fn move_on(&mut self, now: Stamp, span: Duration) {
+        if self.mode == Mode::Idle || !self.protection.may_command(now) {
+            return;
+        }
+        let arrival = self.drive.tick(span);
+        if let Some(last) = self.drive.last() {
+            for (side, setpoint) in last.iter() {
+                self.effects.push(Effect::Setpoint { side, joints: setpoint.joints });
+            }
+        }
+        if self.mode != Mode::Running {
+            return;
+        }
+        match arrival {
+            Arrival::None => {}
+            Arrival::AtGoal => self.arrive(now),
+            Arrival::Halted => self.give_way(now),
+        }
+    }
+
+    fn arrive(&mut self, now: Stamp) {
+        let Some(place) = self.leading_place() else { return };
+        let Some(trial) = self.trial.as_mut() else { return };
+        let events = trial.arrived(place);
+        self.take_up_pending_strategy(now);
+        self.follow(now, events);
+    }
+
+    fn give_way(&mut self, now: Stamp) {
+        let Some(contact) = self.contact.take() else { return };
+        let Some(trial) = self.trial.as_mut() else { return };
+        let side = trial.arm();
+        let changes = trial.resisted(&contact);
+        self.protection.motion_begins();
+        self.show_contact(now, side, &contact);
+        for change in changes {
+            self.log(now, Level::Information, "strategy", format!("{side} arm: {change}"));
+            self.show_change(side, &change);
+            self.effects.push(Effect::Waypoint { side, change });
+        }
+    }
+
+    /// Where the dressing gripper was told to be: the end of what was planned.
+    pub(super) fn leading_place(&self) -> Option<Point> {
+        let side = self.trial.as_ref()?.arm();
+        self.drive.last().map(|last| Point::from(last.get(side).pose.translation.vector))
+    }
+
+    pub(super) fn follow(&mut self, now: Stamp, events: Result<Vec<TrialEvent>, StrategyError>) {
+        match events {
+            Ok(events) => events.into_iter().for_each(|event| self.report(now, event)),
+            Err(error) => self.hold(now, &format!("the strategy cannot begin its pass: {error}")),
+        }
+    }
+
+    fn report(&mut self, now: Stamp, event: TrialEvent) {
+        match event {
+            TrialEvent::IterationBegan { side, iteration } => {
+                self.pass_began = Some(now);
+                self.log(now, Level::Information, "trial", format!("{side} arm: iteration {iteration} begins"));
+                self.show_iteration_began(now, side, iteration);
+            }
+            TrialEvent::IterationEnded { side, summary } => {
+                let strategy = self.trial.as_ref().map_or(self.strategy, |trial| trial.strategy(side).kind());
+                let duration_seconds = self.pass_began.take().map_or(0.0, |began| now.since(began).as_secs_f64());
+                self.show_iteration_ended(side, strategy, &summary, duration_seconds);
+                let text = format!(
+                    "{side} arm: iteration {} ended: energy {:.1} N, {} resistances",
+                    summary.iteration, summary.energy, summary.contacts
+                );
+                self.log(now, Level::Information, "trial", text);
+                self.effects.push(Effect::Iteration { side, strategy, summary, duration_seconds });
+            }
+            TrialEvent::ArmDressed { side } => {
+                self.log(now, Level::Information, "trial", format!("the {side} arm is dressed"));
+            }
+            TrialEvent::Completed => self.end_trial(now, Outcome::Completed, "both arms are dressed"),
+        }
+    }
+
+    /// Ends the trial; the arms stay where they are.
+    pub(super) fn end_trial(&mut self, now: Stamp, outcome: Outcome, reason: &str) {
+        self.mode = Mode::Idle;
+        self.trial = None;
+        self.contact = None;
+        self.pending_strategy = None;
+        self.drive.drop_motion();
+        for side in Side::BOTH {
+            self.effects.push(Effect::Release { side });
+        }
+        self.log(now, Level::Information, "trial", format!("the trial is {}: {reason}", outcome.words()));
+        self.show_end(now, outcome);
+        self.effects.push(Effect::TrialEnded { outcome, reason: reason.to_owned() });
+    }
+
+    /// The arms that the next motion would move.
+    pub(super) fn arms_about_to_move(targets: &PerSide<Option<Point>>) -> Vec<Side> {
+        Side::BOTH.into_iter().filter(|side| targets.get(*side).is_some()).collect()
+    }
+}
