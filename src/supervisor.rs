@@ -45,6 +45,10 @@ enum Mode {
 /// The share of its speed at which a motion goes on under a verdict of slow.
 const SLOW_RATIO: f64 = 0.5;
 
+/// How long the force of a contact may take to fall below the pause tier before it becomes a hold: a person yields within
+/// a reaction time of 0.3 s and the movement that follows (0.12 to 0.28 s in studies of motor control), with room to spare.
+const EASING: std::time::Duration = std::time::Duration::from_secs(2);
+
 /// Owns sensing, strategies, sequencing, safety and motion of one trial after the other.
 #[derive(Debug)]
 pub struct Supervisor {
@@ -57,6 +61,7 @@ pub struct Supervisor {
     strategy: StrategyKind,
     pending_strategy: Option<StrategyKind>,
     contact: Option<Contact>,
+    contact_since: Option<Stamp>,
     pass_began: Option<Stamp>,
     last_tick: Option<Stamp>,
     body: Option<BodyPose>,
@@ -81,6 +86,7 @@ impl Supervisor {
             trial: None,
             pending_strategy: None,
             contact: None,
+            contact_since: None,
             pass_began: None,
             last_tick: None,
             body: None,
@@ -112,8 +118,10 @@ impl Supervisor {
 
     fn tick(&mut self, now: Stamp) {
         let span = self.last_tick.replace(now).map_or(std::time::Duration::ZERO, |last| now.since(last));
-        let verdict = self.protection.judge(now, self.mode != Mode::Idle);
-        self.obey_verdict(now, &verdict);
+        let in_trial = self.mode != Mode::Idle;
+        let inputs = self.protection.judge(now, in_trial);
+        let force = if in_trial { self.protection.judge_force() } else { Verdict::clear() };
+        self.obey_verdict(now, &inputs.stricter(self.tempered(now, force)));
         if self.protection.stop().is_latched() {
             self.repeat_stop(now);
             return;
@@ -122,6 +130,13 @@ impl Supervisor {
             self.give_orders(now);
         }
         self.move_on(now, span);
+    }
+
+    /// Where the arms stand still for a contact, a pause is what happens already: it becomes a hold only where the force
+    /// does not fall by itself.
+    fn tempered(&self, now: Stamp, force: Verdict) -> Verdict {
+        let easing = self.contact_since.is_some_and(|since| now.since(since) <= EASING);
+        if easing && force.reaction == Reaction::Hold { Verdict { reaction: Reaction::Slow, ..force } } else { force }
     }
 
     fn obey_verdict(&mut self, now: Stamp, verdict: &Verdict) {
@@ -144,13 +159,18 @@ impl Supervisor {
     /// What a stop means in here, whoever asked for it.
     fn enter_stop(&mut self, now: Stamp, cause: &str, outcome: Outcome) {
         self.drive.drop_motion();
-        self.contact = None;
+        self.forget_contact();
         self.effects.push(Effect::Stopped { outcome, cause: cause.to_owned() });
         self.log(now, Level::Error, "stop", format!("emergency stop (software): {cause}"));
         self.show_stop(now, cause);
         if self.mode != Mode::Idle {
             self.mode = Mode::Held;
         }
+    }
+
+    const fn forget_contact(&mut self) {
+        self.contact = None;
+        self.contact_since = None;
     }
 
     /// Until the robot confirms the stop, it is asked again at every tick.
@@ -172,7 +192,7 @@ impl Supervisor {
             return;
         }
         self.mode = Mode::Held;
-        self.contact = None;
+        self.forget_contact();
         self.drive.halt();
         self.log(now, Level::Warning, "supervisor", format!("hold: {cause}"));
         self.show_hold(now, cause);
@@ -187,6 +207,7 @@ impl Supervisor {
             self.trial.as_ref().is_some_and(|trial| trial.arm() == sample.side && trial.listens_at(&position));
         if self.mode == Mode::Running && listens && self.drive.phase() == drive::Phase::Moving {
             self.contact = Some(Contact { position, resistance: detection.resistance });
+            self.contact_since = Some(now);
             self.drive.halt();
         }
     }

@@ -105,14 +105,14 @@ impl Default for MotionLimits {
     /// Speed and time are the thesis' (3 s between goals, section 3.5; 0.10 m/s over 0.30 m), joint limits those of the
     /// public MoveIt configuration for Baxter (`baxter_moveit_config`, `joint_limits.yaml`: 0.75 rad/s shoulder to elbow,
     /// 1.0 rad/s wrist, 2.0 rad/s²), turning speed that of published hand-over work with a Baxter
-    /// (`human_robot_collaboration`: 0.5 rad/s). Acceleration and jerk bring a gripper from 0.10 m/s to rest in 0.45 s
-    /// within 25 mm. Gripper distances keep the tool bodies apart and the back panel of a vest (0.40 to 0.50 m) slack.
+    /// (`human_robot_collaboration`: 0.5 rad/s). Acceleration and jerk bring a gripper from 0.10 m/s to rest in 0.17 s
+    /// within 9 mm: the way that a sleeve is pulled on after its catch was found. Gripper distances keep the tool bodies apart and the back panel of a vest (0.40 to 0.50 m) slack.
     fn default() -> Self {
         Self {
             speed: 0.10,
             turning_speed: 0.5,
-            acceleration: 0.5,
-            jerk: 2.0,
+            acceleration: 1.5,
+            jerk: 15.0,
             joint_speed: JointVector::from_column_slice(&[0.75, 0.75, 0.75, 0.75, 1.0, 1.0, 1.0]),
             joint_acceleration: JointVector::repeat(2.0),
             minimum_gripper_distance: 0.10,

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 
 /// How far behind the waiting places the arms take their posture, in metres: on the way there the joints do not lead the
 /// grippers along straight lines, and they must not come near the person (ours).
-const STAND_BACK_METRES: f64 = 0.02;
+const STAND_BACK_METRES: f64 = 0.12;
 
 /// How much further apart than the waiting places, on each side, in metres, for the same reason (ours).
-const STAND_APART_METRES: f64 = 0.06;
+const STAND_APART_METRES: f64 = 0.08;
 
 /// How a trial is run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -457,10 +457,12 @@ impl Trial {
         if self.arm != first {
             return None;
         }
-        let from = self.behind(first);
-        let to = self.behind(first.other());
-        let way = (to - from) * self.progress_at(leading);
-        Some(from + way * share_within(&(from - leading), &way, self.settings.garment_reach_metres))
+        let reach = self.settings.garment_reach_metres;
+        let behind = self.behind(first);
+        // Where the arm is longer than the garment reaches, the trailing gripper follows to the hand.
+        let offset = (behind - leading).cap_magnitude(reach);
+        let way = (self.behind(first.other()) - behind) * self.progress_at(leading);
+        Some(leading + offset + way * share_within(&offset, &way, reach))
     }
 }
 

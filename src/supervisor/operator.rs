@@ -199,9 +199,19 @@ impl Supervisor {
         self.trial = Some(Trial::new(self.setup.settings.trial.clone(), plan, strategies));
         self.mode = Mode::Running;
         self.protection.watchdogs_mut().acknowledge();
+        self.tare_at_rest(now);
         self.log(now, Level::Information, "trial", format!("the trial begins with the {} strategy", self.strategy));
         self.show_start(now);
         Ok("now".into())
+    }
+
+    /// Before a trial both arms stand still and free: the best moment for a zero.
+    fn tare_at_rest(&mut self, now: Stamp) {
+        for side in Side::BOTH {
+            if let Err(reason) = self.protection.tare(now, side) {
+                self.log(now, Level::Warning, "force", format!("the {side} force keeps its old zero: {reason}"));
+            }
+        }
     }
 
     /// Hand, elbow and shoulder of one of the person's arms, as they are seen now.

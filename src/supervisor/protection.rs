@@ -125,17 +125,18 @@ impl Protection {
         self.keep_out = shoulders.chain(pose.neck.map(|neck| neck.position)).collect();
     }
 
-    /// Judges everything at this moment.
+    /// Judges the inputs at this moment; without a trial nothing moves, and nothing is judged.
     pub(super) fn judge(&mut self, now: Stamp, in_trial: bool) -> Verdict {
         self.watchdogs.tick(now);
-        if !in_trial {
-            return Verdict::clear();
-        }
-        let guards = Side::BOTH.map(|side| {
+        if in_trial { self.watchdogs.judge(now) } else { Verdict::clear() }
+    }
+
+    /// What the force guards say now, the stricter of both arms.
+    pub(super) fn judge_force(&self) -> Verdict {
+        Verdict::strictest(Side::BOTH.map(|side| {
             let verdict = self.arms.get(side).guard.verdict().clone();
             Verdict { cause: format!("{side} arm: {}", verdict.cause), ..verdict }
-        });
-        Verdict::strictest([self.watchdogs.judge(now)].into_iter().chain(guards))
+        }))
     }
 
     /// What motion needs.

@@ -8,6 +8,7 @@ use crate::kinematics::{
     JointVector, MotionRefusal, PairMotion, Scene, Target, dressing_orientation, plan_pair, plan_postures,
     start_postures,
 };
+use crate::safety::Reaction;
 use crate::sequencing::{Order, Stage, Trial, TrialEvent};
 use crate::snapshot::{Level, Outcome};
 use crate::strategy::StrategyError;
@@ -21,7 +22,7 @@ const APPROACH_SLACK: f64 = 0.15;
 impl Supervisor {
     /// Starts the motion that the trial asks for, where none is under way.
     pub(super) fn give_orders(&mut self, now: Stamp) {
-        if self.drive.phase() != Phase::Holding {
+        if self.drive.phase() != Phase::Holding || self.contact.is_some() {
             return;
         }
         let Some(Order::Move { targets, least_seconds }) = self.trial.as_ref().map(Trial::order) else {
@@ -85,9 +86,9 @@ impl Supervisor {
             return;
         }
         match arrival {
-            Arrival::None => {}
             Arrival::AtGoal => self.arrive(now),
-            Arrival::Halted => self.give_way(now),
+            Arrival::None | Arrival::Halted if self.drive.phase() == Phase::Holding => self.give_way(now),
+            Arrival::None | Arrival::Halted => {}
         }
     }
 
@@ -99,11 +100,16 @@ impl Supervisor {
         self.follow(now, events);
     }
 
+    /// Answers a contact, once the arms stand still and the force has fallen below its pause tier.
     fn give_way(&mut self, now: Stamp) {
+        if self.protection.judge_force().reaction >= Reaction::Hold {
+            return;
+        }
         let Some(contact) = self.contact.take() else { return };
         let Some(trial) = self.trial.as_mut() else { return };
         let side = trial.arm();
         let changes = trial.resisted(&contact);
+        self.contact_since = None;
         self.protection.motion_begins();
         self.show_contact(now, side, &contact);
         for change in changes {
@@ -155,7 +161,7 @@ impl Supervisor {
     pub(super) fn end_trial(&mut self, now: Stamp, outcome: Outcome, reason: &str) {
         self.mode = Mode::Idle;
         self.trial = None;
-        self.contact = None;
+        self.forget_contact();
         self.pending_strategy = None;
         self.drive.drop_motion();
         for side in Side::BOTH {
