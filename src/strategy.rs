@@ -5,17 +5,26 @@
 //! robot, where a contact may come anywhere on the way, and the thesis' synthetic problem, where [`rehearse`] probes the
 //! path step by step. It never moves anything and never judges safety.
 
+mod blend;
 mod error;
+mod explained;
 mod fixed;
 mod force;
+mod kernel;
 mod learner;
+mod multimodal;
+mod nodes;
+mod offset_field;
 pub mod rehearse;
 mod report;
 mod settings;
 
+pub use blend::BlendStrategy;
 pub use error::StrategyError;
 pub use fixed::FixedPath;
 pub use force::ForceStrategy;
+pub use multimodal::MultimodalStrategy;
+pub use nodes::NodeStrategy;
 pub use report::{Contact, Finish, Ignored, IterationSummary, LearnedPath, Reaction, Rule, WaypointChange};
 pub use settings::{
     BlendSettings, Guards, KernelSettings, LearningSettings, MultimodalSettings, OffsetFieldSettings, StrategySettings,
@@ -23,6 +32,8 @@ pub use settings::{
 
 use crate::geometry::{Finite, Point, Vector};
 use crate::modelling::ArmSpace;
+use crate::modelling::stick::{Space, StickFit};
+use crate::planning::Reach;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -138,11 +149,53 @@ pub fn build(
     settings.validate()?;
     check_path(&context.initial)?;
     let space = || context.space.as_ref().ok_or(StrategyError::NoMovementSpace { strategy: kind });
-    Ok(match kind {
-        StrategyKind::Gmm => Box::new(FixedPath::from_space(space()?, &context.initial)),
-        StrategyKind::Force => Box::new(ForceStrategy::new(&context.initial, &settings.learning)),
-        _ => return Err(StrategyError::NoMovementSpace { strategy: kind }),
+    let initial = &context.initial;
+    let learning = &settings.learning;
+    let strategy: Box<dyn Strategy> = match kind {
+        StrategyKind::Gmm => Box::new(FixedPath::from_space(space()?, initial)),
+        StrategyKind::Force => Box::new(ForceStrategy::new(initial, learning)),
+        StrategyKind::Multimodal => {
+            Box::new(MultimodalStrategy::new(context, space()?, learning, &settings.multimodal))
+        }
+        StrategyKind::Kernel => Box::new(kernel_step(initial, learning, &settings.kernel)),
+        StrategyKind::OffsetField => Box::new(offset_field(initial, learning, &settings.offset_field)),
+        StrategyKind::Blend => Box::new(blended(settings, initial, space()?)),
+    };
+    Ok(match &context.space {
+        Some(space) => Box::new(explained::Explained::new(strategy, coarse_reach(space, initial))),
+        None => strategy,
     })
+}
+
+/// A judge that is quick enough to answer between two control steps.
+fn coarse_reach(space: &ArmSpace, initial: &[Point; 3]) -> Reach {
+    Reach::new(space.clone(), initial, StickFit::coarse(Space::Spatial))
+}
+
+fn blended(settings: &StrategySettings, initial: &[Point; 3], space: &ArmSpace) -> BlendStrategy {
+    // One iteration is kept for the pass that shows what the blend costs in force.
+    let iterations = settings.learning.maximum_iterations.saturating_sub(1).max(1);
+    let learning = LearningSettings { maximum_iterations: iterations, ..settings.learning.clone() };
+    let comfort = kernel_step(initial, &learning, &settings.kernel);
+    let [hand, elbow, shoulder] = initial;
+    let reachable = [*hand, Point::from(space.elbow.nearest_mean(&elbow.coords).1), *shoulder];
+    BlendStrategy::new(comfort, coarse_reach(space, initial), &reachable, &settings.blend)
+}
+
+/// The kernel step on any initial path. The settings have been checked.
+#[must_use]
+pub fn kernel_step(initial: &[Point], learning: &LearningSettings, settings: &KernelSettings) -> NodeStrategy {
+    let correction = Box::new(kernel::KernelStep::new(settings));
+    let learn = settings.learn_stiffness;
+    NodeStrategy::new(StrategyKind::Kernel, initial, learning, correction, settings.stiffness, learn)
+}
+
+/// The Gaussian-process field of offsets on any initial path. The settings have been checked.
+#[must_use]
+pub fn offset_field(initial: &[Point], learning: &LearningSettings, settings: &OffsetFieldSettings) -> NodeStrategy {
+    let correction = Box::new(offset_field::OffsetField::new(settings));
+    let learn = settings.learn_stiffness;
+    NodeStrategy::new(StrategyKind::OffsetField, initial, learning, correction, settings.stiffness, learn)
 }
 
 /// Two way-points closer than this are the same point, and the line between them has no direction.

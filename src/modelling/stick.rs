@@ -63,25 +63,39 @@ pub struct Reachability {
 /// Orientations tried in the plane, and places along the stick.
 const ORIENTATIONS: u32 = 48;
 const PLACES: u32 = 17;
-/// Orientations tried in space: about 15 degrees apart, as in the plane 7.5 degrees.
+/// Orientations tried in space: about 15 degrees apart.
 const SPATIAL_ORIENTATIONS: u32 = 200;
+/// The same for a judgement that is wanted at once: half as fine.
+const COARSE: (u32, u32, u32) = (24, 50, 7);
 
-/// Fits sticks through points: the directions to try and the height of the modes, worked out once.
+/// Fits sticks through points by trying orientations and places.
 #[derive(Clone, Debug)]
 pub struct StickFit {
     space: Space,
     directions: Vec<Vector>,
+    places: u32,
 }
 
 impl StickFit {
     /// A fit in the plane or in space.
     #[must_use]
     pub fn new(space: Space) -> Self {
+        Self::with(space, ORIENTATIONS, SPATIAL_ORIENTATIONS, PLACES)
+    }
+
+    /// A quicker fit with half the resolution.
+    #[must_use]
+    pub fn coarse(space: Space) -> Self {
+        let (planar, spatial, places) = COARSE;
+        Self::with(space, planar, spatial, places)
+    }
+
+    fn with(space: Space, planar: u32, spatial: u32, places: u32) -> Self {
         let directions = match space {
-            Space::Planar => (0..ORIENTATIONS).map(planar_direction).collect(),
-            Space::Spatial => (0..SPATIAL_ORIENTATIONS).map(spatial_direction).collect(),
+            Space::Planar => (0..planar).map(|index| planar_direction(index, planar)).collect(),
+            Space::Spatial => (0..spatial).map(|index| spatial_direction(index, spatial)).collect(),
         };
-        Self { space, directions }
+        Self { space, directions, places }
     }
 
     /// The best of all sticks through `point`. `best_possible` is the sum of the log densities at the two modes.
@@ -90,8 +104,8 @@ impl StickFit {
         let region = self.space.region_95();
         let mut result = Reachability { score: f64::NEG_INFINITY, inside: false };
         for direction in &self.directions {
-            for place in 0..PLACES {
-                let share = f64::from(place) / f64::from(PLACES - 1);
+            for place in 0..self.places {
+                let share = f64::from(place) / f64::from(self.places - 1);
                 let start = point - direction * (limb.length * share);
                 let end = start + direction * limb.length;
                 let score = limb.start.log_density(&start) + limb.end.log_density(&end);
@@ -104,15 +118,15 @@ impl StickFit {
     }
 }
 
-fn planar_direction(index: u32) -> Vector {
-    let (sine, cosine) = (TAU * f64::from(index) / f64::from(ORIENTATIONS)).sin_cos();
+fn planar_direction(index: u32, count: u32) -> Vector {
+    let (sine, cosine) = (TAU * f64::from(index) / f64::from(count)).sin_cos();
     Vector::new(cosine, sine, 0.0)
 }
 
 /// A point of the Fibonacci sphere: nearly equal spacing for any count.
-fn spatial_direction(index: u32) -> Vector {
+fn spatial_direction(index: u32, count: u32) -> Vector {
     let golden = TAU * (1.0 - 1.0 / 1.618_033_988_749_895);
-    let height = 1.0 - (2.0 * f64::from(index) + 1.0) / f64::from(SPATIAL_ORIENTATIONS);
+    let height = 1.0 - (2.0 * f64::from(index) + 1.0) / f64::from(count);
     let around = (1.0 - height * height).sqrt();
     let (sine, cosine) = (golden * f64::from(index)).sin_cos();
     Vector::new(around * cosine, around * sine, height)

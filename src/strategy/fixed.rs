@@ -23,6 +23,12 @@ impl FixedPath {
         let path = goals.map(|(mixture, joint)| Point::from(mixture.nearest_mean(&joint.coords).1)).collect();
         Self { path, iteration: 0, under_way: None, adopted: false }
     }
+
+    /// A path that is given.
+    #[must_use]
+    pub const fn along(path: Vec<Point>) -> Self {
+        Self { path, iteration: 0, under_way: None, adopted: true }
+    }
 }
 
 impl Strategy for FixedPath {

@@ -53,16 +53,21 @@ impl Learner {
 
     /// Judges a pass that has ended and remembers whether it was the last.
     pub(super) fn judge(&mut self, pass: &Pass) -> Option<Finish> {
-        self.finished = if pass.overflow {
-            Some(Finish::Overflow)
-        } else if pass.energy <= self.settings.energy_threshold {
-            Some(Finish::Converged)
-        } else if self.optimiser.state().iteration >= self.settings.maximum_iterations {
-            Some(Finish::MaximumReached)
-        } else {
-            None
-        };
+        self.finished = finish_of(&self.settings, self.optimiser.state().iteration, pass);
         self.finished
+    }
+}
+
+/// Whether a pass that has ended was the last one, and why.
+pub(super) fn finish_of(settings: &LearningSettings, iteration: u32, pass: &Pass) -> Option<Finish> {
+    if pass.overflow {
+        Some(Finish::Overflow)
+    } else if pass.energy <= settings.energy_threshold {
+        Some(Finish::Converged)
+    } else if iteration >= settings.maximum_iterations {
+        Some(Finish::MaximumReached)
+    } else {
+        None
     }
 }
 
