@@ -3,3 +3,4 @@
 //! Nothing here is used while a trial runs.
 
 pub mod detectors;
+pub mod torture;
