@@ -1,11 +1,23 @@
-//! `valet bench`: speeds that matter to a user.
+//! `valet bench`: speeds that matter to a user, measured on this machine.
+
+mod ik;
 
 use super::exit::Failure;
 
 /// Speeds that matter to a user.
-#[derive(Debug, Default, clap::Args)]
-pub(super) struct Arguments {}
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    bench: Bench,
+}
 
-pub(super) fn run(_arguments: &Arguments) -> Result<(), Failure> {
-    Err(Failure::Fault("bench: not built yet".into()))
+#[derive(Debug, clap::Subcommand)]
+enum Bench {
+    Ik(ik::Arguments),
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.bench {
+        Bench::Ik(arguments) => ik::run(arguments),
+    }
 }
