@@ -6,6 +6,7 @@
 mod chain;
 mod check;
 mod collision;
+mod damped;
 mod description;
 mod inverse;
 mod limits;

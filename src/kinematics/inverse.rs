@@ -7,10 +7,11 @@
 
 use super::JointVector;
 use super::chain::{Chain, Frame, JOINTS, Jacobian};
+use super::damped::damped_step;
 use super::limits::JointLimits;
 use super::model::ArmModel;
 use crate::geometry::{Finite, Pose};
-use nalgebra::{Matrix3, Matrix6, Quaternion, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use thiserror::Error;
@@ -170,7 +171,7 @@ impl ArmModel {
     pub(super) fn free_motion(&self, joints: &JointVector, wanted: &JointVector) -> JointVector {
         let jacobian = self.chain.frames(joints).jacobian();
         let moved = jacobian * wanted;
-        damped_step(&jacobian, &[true; JOINTS], &moved, 1e-4).map_or_else(JointVector::zeros, |back| wanted - back)
+        wanted - damped_step(&jacobian, &[true; JOINTS], &moved, 1e-4)
     }
 
     /// One attempt from a seed that is already close: the inner step of path tracking.
@@ -219,7 +220,7 @@ impl ArmModel {
         let mut free = [true; JOINTS];
         let mut next = *joints;
         for _ in 0..3 {
-            let Some(step) = damped_step(jacobian, &free, &remaining, damping) else { break };
+            let step = damped_step(jacobian, &free, &remaining, damping);
             let scale = (STEP_CAP / step.amax()).min(1.0);
             let mut blocked = false;
             let ranges = self.limits.lower.iter().zip(self.limits.upper.iter());
@@ -274,22 +275,6 @@ impl Nearest {
             nearest: self.joints,
         }
     }
-}
-
-/// Solves (J Jᵀ + λ 1) y = e over the free joints and returns Jᵀ y; zero for joints that are not free.
-fn damped_step(jacobian: &Jacobian, free: &[bool; JOINTS], error: &Vector6<f64>, damping: f64) -> Option<JointVector> {
-    let mut open = *jacobian;
-    for (mut column, free) in open.column_iter_mut().zip(free) {
-        if !free {
-            column.fill(0.0);
-        }
-    }
-    let mut gram: Matrix6<f64> = open * open.transpose();
-    for index in 0..6 {
-        gram[(index, index)] += damping;
-    }
-    let solved = gram.cholesky()?.solve(error);
-    Some(open.tr_mul(&solved))
 }
 
 /// The twist (metres, radians, axes of `base`) that takes `from` to `to` in unit time.
