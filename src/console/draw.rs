@@ -98,7 +98,7 @@ fn draw_line(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
 
 /// Draws state line, stop banner, tabs, message and keys; returns what is left in the middle.
 fn draw_frame(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> Rect {
-    put(buffer, area, 0, &state_line(scene));
+    put(buffer, area, 0, &state_line(scene, area.width));
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     let taken = banner::draw(scene, below, buffer);
     let compact = Tier::of(area.width, area.height) == Tier::Compact;
@@ -113,10 +113,11 @@ fn draw_frame(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> Rect {
     Rect { y: area.y + top, height: area.height.saturating_sub(top + 2), ..area }
 }
 
-fn state_line<'a>(scene: &Scene<'a>) -> Line<'a> {
+fn state_line<'a>(scene: &Scene<'a>, width: u16) -> Line<'a> {
     let (live, look) = (scene.live, scene.look);
     let dot = look.glyphs().dot;
-    let mut spans = vec![span(look, Role::Title, "valet ")];
+    let narrow = width < 100;
+    let mut spans = if narrow { Vec::new() } else { vec![span(look, Role::Title, "valet ")] };
     if let Some(word) = live.watermark.word() {
         spans.push(span(look, Role::Watermark, format!(" {word} ")));
         spans.push(Span::raw(" "));
@@ -144,7 +145,7 @@ fn state_line<'a>(scene: &Scene<'a>) -> Line<'a> {
             fact(strategy.name().into(), Role::Text);
         }
         if let Some(iteration) = iteration {
-            fact(format!("energy {:.1} N", iteration.energy), Role::Text);
+            fact(format!("{}{:.1} N", if narrow { "" } else { "energy " }, iteration.energy), Role::Text);
         }
     }
     let recorder = recorder_words(&live.recorder);

@@ -3,7 +3,6 @@
 use super::Scene;
 use crate::assembly::{RedButton, RobotState, StopSource};
 use crate::console::theme::Role;
-use crate::console::view::Tier;
 use crate::console::widgets::text::{clock, line, put, seconds};
 use crate::snapshot::{Snapshot, StopPhase};
 use ratatui::buffer::Buffer;
@@ -104,8 +103,10 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
     let key = scene.keys.first_key(crate::console::Action::Stop);
     let red = button(scene.live);
     if state.role != Role::Stop {
-        let text = if scene.view.tier() <= Tier::Compact {
+        let text = if area.width < 70 {
             format!("{} · {key}: STOP · red button {red}", state.word)
+        } else if area.width < 100 {
+            format!("{} · {key}: EMERGENCY STOP (software) · red button: {red}", state.word)
         } else {
             format!("{} · {key}: EMERGENCY STOP (software), not safety-rated · red button: {red}", state.word)
         };

@@ -1,6 +1,6 @@
 //! What lies on top of a screen: questions, lists, fields, settings and help.
 
-use super::Scene;
+use super::{Scene, refusal};
 use crate::console::dialog::{Dialog, TextPurpose};
 use crate::console::keymap::{Entry, TABLE};
 use crate::console::theme::Role;
@@ -209,10 +209,12 @@ fn push_group<'a, 'b>(
         let keys = scene.keys.keys_of(entry.action).join(" ");
         let place = if name == "on other screens" { format!(" [{}]", entry.scope.words()) } else { String::new() };
         let guard = if entry.guard.words().is_empty() { String::new() } else { format!(" ({})", entry.guard.words()) };
+        let not_now = refusal(entry.action, scene.live).map_or_else(String::new, |reason| format!(" now: {reason}"));
         lines.push(Line::from(vec![
             span(scene.look, Role::Key, format!(" {keys:<12}")),
             span(scene.look, Role::Text, entry.text),
             span(scene.look, Role::Muted, format!("{guard}{place}")),
+            span(scene.look, Role::Late, not_now),
         ]));
     }
 }

@@ -77,7 +77,7 @@ fn selected_mark<'a>(scene: &Scene<'a>, side: Side, force: &ForceView) -> ratatu
     let shown = &scene.shown().sides.get(side).force;
     let mark = scene.view.mark.filter(|_| side == scene.view.side);
     let Some(detection) = mark.and_then(|mark| shown.detections.iter().rev().nth(mark)) else {
-        return span(scene.look, Role::Muted, format!(" · {} resistances", force.detections.len()));
+        return span(scene.look, Role::Muted, format!(" · resistances: {}", force.detections.len()));
     };
     let waypoint = detection.waypoint.map_or_else(String::new, |index| format!(" at way-point {index}"));
     let text =
@@ -108,6 +108,7 @@ fn draw_kind(scene: &Scene<'_>, side: Side, kind: Kind, area: Rect, buffer: &mut
             series: *index,
             threshold: (kind == Kind::Detector).then_some(force.window.threshold),
             scale,
+            floor: if combined && envelope.least(*index) >= 0.0 { 0.0 } else { -scale },
             marks: if combined { &marks } else { &[] },
         };
         let place = Rect { y: area.y + height * u16::try_from(row).unwrap_or(0), height, ..area };

@@ -55,7 +55,7 @@ fn link_lines<'a>(scene: &Scene<'a>) -> Vec<Line<'a>> {
     };
     let recorder = recorder_line(scene);
     let row = |name: &'static str, (text, role): (String, Role)| {
-        Line::from(vec![span(look, Role::Title, format!("{name:<10}")), span(look, role, text)])
+        Line::from(vec![span(look, Role::Title, format!("{name:<11}")), span(look, role, text)])
     };
     let pressed = live.robot.fresh(live.now).is_some_and(|robot| robot.button == crate::assembly::RedButton::Pressed);
     vec![

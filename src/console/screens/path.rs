@@ -77,7 +77,7 @@ pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffe
     let [top, front] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).spacing(1).areas(views);
     draw_view(scene, TOP, top, buffer);
     draw_view(scene, FRONT, front, buffer);
-    fill(buffer, table, table_lines(scene, table.height));
+    fill(buffer, table, table_lines(scene, table));
 }
 
 fn draw_view(scene: &Scene<'_>, camera: Camera, area: Rect, buffer: &mut Buffer) {
@@ -197,7 +197,8 @@ fn draw_ellipse(grid: &mut DotGrid, projection: &Projection, ellipse: &EllipseVi
     grid.glyph(middle, digit, Role::Space);
 }
 
-fn table_lines<'a>(scene: &Scene<'a>, height: u16) -> Vec<Line<'a>> {
+fn table_lines<'a>(scene: &Scene<'a>, area: Rect) -> Vec<Line<'a>> {
+    let decimals = if area.width < 100 { 2 } else { 3 };
     let changes = &scene.shown().sides.get(scene.view.side).path.changes;
     let heading = format!(
         "Way-points that moved, {} arm: {} (newest first; digits on ellipses: weight in tenths)",
@@ -209,25 +210,26 @@ fn table_lines<'a>(scene: &Scene<'a>, height: u16) -> Vec<Line<'a>> {
         lines.push(line(scene.look, Role::Muted, "none moved yet"));
         return lines;
     }
-    lines.push(line(
-        scene.look,
-        Role::Muted,
-        "iteration point   old (m)                 new (m)                 force (N)  why",
-    ));
+    let width = 3 * (decimals + 4);
+    let columns = format!("iter. point {:<width$}    {:<width$}      N  why", " old (m)", " new (m)");
+    lines.push(line(scene.look, Role::Muted, columns));
     let found = changes.iter().rev().filter(|change| scene.view.passes(&change.reason));
     let skipped = scene.view.row.min(changes.len().saturating_sub(1));
-    lines.extend(found.skip(skipped).take(usize::from(height)).map(|change| change_line(scene, change)));
+    lines.extend(found.skip(skipped).take(usize::from(area.height)).map(|change| change_line(scene, change, decimals)));
     lines
 }
 
-fn change_line<'a>(scene: &Scene<'a>, change: &'a WaypointRow) -> Line<'a> {
-    let place = |point: &Point| format!("{:>6.3} {:>6.3} {:>6.3}", point.x, point.y, point.z);
+fn change_line<'a>(scene: &Scene<'a>, change: &'a WaypointRow, decimals: usize) -> Line<'a> {
+    let place = |point: &Point| {
+        let axis = |value: f64| format!("{value:>width$.decimals$}", width = decimals + 4);
+        format!("{}{}{}", axis(point.x), axis(point.y), axis(point.z))
+    };
     Line::from(vec![
-        span(scene.look, Role::Text, format!("{:>9} {:>5}   ", change.iteration, change.index)),
+        span(scene.look, Role::Text, format!("{:>5} {:>5} ", change.iteration, change.index)),
         span(scene.look, Role::Muted, place(&change.old)),
         span(scene.look, Role::Muted, format!(" {:<2} ", scene.look.glyphs().arrow)),
         span(scene.look, Role::Updated, place(&change.new)),
-        span(scene.look, Role::Resistance, format!("  {:>7.2}  ", change.force.norm())),
+        span(scene.look, Role::Resistance, format!(" {:>6.2}  ", change.force.norm())),
         span(scene.look, Role::Text, change.reason.as_str()),
     ])
 }

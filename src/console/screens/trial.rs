@@ -9,7 +9,7 @@ use crate::console::widgets::text::{bar, clock, fill, line, span, stale, title, 
 use crate::snapshot::{ForceTier, IterationView, StepRow, TrialPhase};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
-use ratatui::text::{Line, Span};
+use ratatui::text::Line;
 
 /// Draws the screen.
 pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
@@ -113,9 +113,9 @@ pub(super) fn force_words<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
     let mut spans = vec![span(look, Role::Title, format!("{side:<5} "))];
     match force.fresh_sample(now) {
         Some(sample) => {
-            spans.push(span(look, Role::Text, format!("|F| {:>6.2} N", sample.magnitude())));
+            spans.push(span(look, Role::Text, format!("|F| {:>5.2} N", sample.magnitude())));
             let window = match sample.statistic {
-                Some(statistic) => format!(" · window {statistic:>6.2} of {:.1} N", force.window.threshold),
+                Some(statistic) => format!(" · window {statistic:>5.2}/{:.1} N", force.window.threshold),
                 None => format!(" · window fills {}/{}", force.window.filled, force.window.length),
             };
             spans.push(span(look, Role::Muted, window));
@@ -125,7 +125,7 @@ pub(super) fn force_words<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
     Line::from(spans)
 }
 
-fn margin_line<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
+pub(super) fn margin_line<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
     let (look, force) = (scene.look, &scene.live.sides.get(side).force);
     let role = match force.tier {
         ForceTier::Normal => Role::Good,
@@ -138,9 +138,8 @@ fn margin_line<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
         None if force.margins.is_empty() => " · no limits known".into(),
         None => String::new(),
     };
-    let cause = if force.tier_cause.is_empty() { String::new() } else { format!(" ({})", force.tier_cause) };
+    let cause = if force.tier_cause.is_empty() { String::new() } else { format!(" · {}", force.tier_cause) };
     Line::from(vec![
-        Span::raw("      "),
         span(look, role, format!("{symbol} {}", force.tier)),
         span(look, Role::Text, format!("{margin}{cause}")),
     ])
@@ -151,16 +150,23 @@ fn arm_lines<'a>(scene: &Scene<'a>, side: Side, area: Rect) -> Vec<Line<'a>> {
     let focused = scene.live.trial.arm == Some(side);
     let name = span(look, if focused { Role::Focus } else { Role::Title }, format!(" {side} arm "));
     let progress = match view.progress {
-        Some(share) => {
-            span(look, Role::Updated, format!(" hand {} shoulder {:>3.0} %", bar(look, share, 12), share * 100.0))
-        }
+        Some(share) => span(
+            look,
+            Role::Updated,
+            format!(
+                " hand {} shoulder {:>3.0} %",
+                bar(look, share, if area.width < 50 { 6 } else { 12 }),
+                share * 100.0
+            ),
+        ),
         None => span(look, Role::Muted, " no iteration runs"),
     };
     let mut lines = vec![Line::from(vec![name, progress]), force_words(scene, side), margin_line(scene, side)];
     let room = usize::from(area.height).saturating_sub(lines.len() + 1);
     let first = view.iterations.len().saturating_sub(room);
     let most = view.iterations.iter().map(|iteration| iteration.energy).fold(0.0, f64::max);
-    lines.push(line(look, Role::Muted, "iteration   resistance sum (energy), criterion 0 N"));
+    let heading = format!(" n/{:<4}energy: resistance sum, ends at 0 N", view.iterations_maximum);
+    lines.push(line(look, Role::Muted, heading));
     let rows = view.iterations.iter().skip(first);
     lines.extend(rows.map(|iteration| iteration_line(scene, iteration, view.iterations_maximum, most)));
     lines

@@ -80,6 +80,12 @@ impl Envelope {
         ends.filter(|value| value.is_finite()).fold(0.0, f64::max)
     }
 
+    /// The least value of a series, or zero where it has none.
+    pub(in crate::console) fn least(&self, series: usize) -> f64 {
+        let extents = self.columns.iter().filter_map(|column| column.get(series).copied().flatten());
+        extents.map(|(least, _)| least).fold(0.0, f64::min)
+    }
+
     fn include(&mut self, column: i64, values: [Option<f64>; SERIES]) {
         let Some(extents) = usize::try_from(column).ok().and_then(|column| self.columns.get_mut(column)) else {
             return;

@@ -27,6 +27,8 @@ pub(in crate::console) struct Strip<'a> {
     pub(in crate::console) threshold: Option<f64>,
     /// Newtons at the upper edge.
     pub(in crate::console) scale: f64,
+    /// Newtons at the lower edge.
+    pub(in crate::console) floor: f64,
     /// Columns with a mark, and whether it is selected.
     pub(in crate::console) marks: &'a [(i64, bool)],
 }
@@ -87,7 +89,8 @@ impl Strip<'_> {
                 }
             }
         }
-        for threshold in self.threshold.into_iter().flat_map(|threshold| [threshold, -threshold]) {
+        let both = self.threshold.into_iter().flat_map(|threshold| [threshold, -threshold]);
+        for threshold in both.filter(|threshold| *threshold >= self.floor) {
             grid.rule(self.row(threshold, height), glyphs.dash, Role::Threshold);
         }
         for (column, selected) in self.marks {
@@ -99,7 +102,7 @@ impl Strip<'_> {
     /// The dot row of a value; values beyond the scale stick to its edge.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the plot's height")]
     fn row(&self, value: f64, height: usize) -> usize {
-        let share = ((self.scale - value) / (2.0 * self.scale)).clamp(0.0, 1.0);
+        let share = ((self.scale - value) / (self.scale - self.floor)).clamp(0.0, 1.0);
         (share * height.saturating_sub(1) as f64).round() as usize
     }
 }
@@ -128,6 +131,7 @@ mod tests {
             series: 0,
             threshold: Some(threshold),
             scale: round_scale(threshold.max(envelope.largest())),
+            floor: -round_scale(threshold.max(envelope.largest())),
             marks: &[(18, false)],
         };
         let area = Rect::new(0, 0, LABEL_WIDTH + 10, 4);
