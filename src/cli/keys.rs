@@ -2,8 +2,9 @@
 
 use super::exit::Failure;
 use super::output::Output;
-use crate::console::{ConsoleOptions, KeyMap, TABLE};
+use crate::console::{self, ConsoleOptions, KeyMap, Practice, TABLE};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// The table of keys.
 #[derive(Debug, Default, clap::Args)]
@@ -14,6 +15,9 @@ pub(super) struct Arguments {
     /// One JSON object a line.
     #[arg(long)]
     json: bool,
+    /// Practise the keys at a made-up trial that is connected to nothing.
+    #[arg(long, conflicts_with_all = ["list", "json"])]
+    practise: bool,
 }
 
 /// One row of the table for programs.
@@ -28,6 +32,9 @@ struct Row<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.practise {
+        return practise();
+    }
     let keys = KeyMap::new(&ConsoleOptions::default().keys).map_err(Failure::configuration)?;
     let mut output = Output::new(arguments.json);
     for entry in TABLE {
@@ -39,6 +46,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         output.event(&Row { event: "key", action: entry.name, keys: names, scope, guard, text: entry.text })?;
     }
     Ok(())
+}
+
+fn practise() -> Result<(), Failure> {
+    let practice = Practice::new();
+    let stop = Arc::new(practice.clone());
+    let left = console::run(practice.clone(), practice, stop, None, &ConsoleOptions::default());
+    left.map(|_| ()).map_err(Failure::fault)
 }
 
 /// The key table as lines of text, for the man page.

@@ -1,6 +1,6 @@
-//! Snapshots made up for looking at the screens: for tests, benches and documentation, the same at every call.
+//! Snapshots made up for looking at the screens: for practice, tests and benches, the same at every call.
 //!
-//! Never shown to an operator: they come from no trial.
+//! They come from no trial, and say so by their watermark.
 
 mod sides;
 
@@ -40,40 +40,52 @@ impl Situation {
 /// Half a minute past ten in the morning of some day.
 const NOW: Stamp = Stamp::from_nanoseconds(1_000_000_000 * (1_800_000_000 / 86_400 * 86_400 + 36_030));
 
-/// A made-up snapshot.
+/// A made-up snapshot of a moment that is always the same.
 #[must_use]
 pub fn fixture(situation: Situation) -> Snapshot {
-    if situation == Situation::Empty {
-        return empty();
+    fixture_at(situation, Moment(NOW))
+}
+
+/// The moment that a made-up snapshot shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment(pub(super) Stamp);
+
+impl Moment {
+    /// So many milliseconds before.
+    pub(super) fn ago(self, milliseconds: u64) -> Stamp {
+        Stamp::from_nanoseconds(self.0.nanoseconds().saturating_sub(milliseconds * 1_000_000))
     }
-    let mut snapshot = live();
+
+    fn fresh(self, milliseconds: u64, deadline: f64) -> Freshness {
+        Freshness { last: Some(self.ago(milliseconds)), deadline }
+    }
+}
+
+/// A made-up snapshot of any moment.
+pub(super) fn fixture_at(situation: Situation, at: Moment) -> Snapshot {
+    if situation == Situation::Empty {
+        return empty(at);
+    }
+    let mut snapshot = live(at);
     match situation {
-        Situation::Stale => snapshot.now = NOW + Duration::from_millis(1200),
-        Situation::Stopped => stop(&mut snapshot),
-        Situation::Faulty => fail(&mut snapshot),
+        Situation::Stale => snapshot.now = at.0 + Duration::from_millis(1200),
+        Situation::Stopped => stop(&mut snapshot, at),
+        Situation::Faulty => fail(&mut snapshot, at),
         Situation::Live | Situation::Empty => {}
     }
     snapshot
 }
 
-fn ago(milliseconds: u64) -> Stamp {
-    Stamp::from_nanoseconds(NOW.nanoseconds() - milliseconds * 1_000_000)
-}
-
-fn fresh(milliseconds: u64, deadline: f64) -> Freshness {
-    Freshness { last: Some(ago(milliseconds)), deadline }
-}
-
-fn live() -> Snapshot {
-    let state = RobotState { stamp: ago(8), ready: Some(true), enabled: true, ..RobotState::default() };
+fn live(at: Moment) -> Snapshot {
+    let state = RobotState { stamp: at.ago(8), ready: Some(true), enabled: true, ..RobotState::default() };
     Snapshot {
-        now: NOW,
+        now: at.0,
         watermark: Watermark::Demo,
         robot: RobotView { state: Some(state), deadline_seconds: 0.25 },
         master: MasterView { uri: "http://localhost:11311".into(), connected: true, text: "since 09:58:11".into() },
-        trial: trial(),
-        sides: PerSide::from_fn(|side| sides::side(side, NOW)),
-        body: body(),
+        trial: trial(at),
+        sides: PerSide::from_fn(|side| sides::side(side, at)),
+        body: body(at),
         strategies: vec![
             strategy(StrategyKind::Gmm, &[31.0], -0.55, 0.999, 14.2),
             strategy(StrategyKind::Force, &[22.2, 9.4, 3.1], -1.7, 0.92, 3.1),
@@ -86,7 +98,7 @@ fn live() -> Snapshot {
             strategies: StrategyKind::ALL.to_vec(),
         }
         .into(),
-        topics: topics().into(),
+        topics: topics(at).into(),
         checks: checks(Verdict::Good).into(),
         recorder: RecorderView {
             on: true,
@@ -96,14 +108,14 @@ fn live() -> Snapshot {
             ..RecorderView::default()
         },
         settings: settings().into(),
-        log: log(),
-        receipts: receipts(),
-        timeline: timeline(),
+        log: log(at),
+        receipts: receipts(at),
+        timeline: timeline(at),
         ..Snapshot::default()
     }
 }
 
-fn trial() -> TrialView {
+fn trial(at: Moment) -> TrialView {
     let goals = [
         ["behind left shoulder", "behind right shoulder"],
         ["behind right shoulder", "right hand"],
@@ -118,7 +130,7 @@ fn trial() -> TrialView {
     };
     TrialView {
         phase: TrialPhase::Dressing,
-        since: Some(ago(9400)),
+        since: Some(at.ago(9400)),
         steps: (1..).zip(goals).map(step).collect::<Vec<_>>().into(),
         step: PerSide { left: Some(3), right: Some(4) },
         arm: Some(Side::Right),
@@ -138,8 +150,8 @@ fn trial() -> TrialView {
     }
 }
 
-fn body() -> BodyView {
-    let mut pose = BodyPose { stamp: ago(30), ..BodyPose::default() };
+fn body(at: Moment) -> BodyView {
+    let mut pose = BodyPose { stamp: at.ago(30), ..BodyPose::default() };
     for side in Side::BOTH {
         let y = if side == Side::Right { -0.25 } else { 0.25 };
         let joints = [(Joint::Hand, 0.95, 0.1), (Joint::Elbow, 0.8, 0.05), (Joint::Shoulder, 0.6, 0.2)];
@@ -155,7 +167,7 @@ fn body() -> BodyView {
             pose.arms.get_mut(side).set(joint, Some(estimate));
         }
     }
-    BodyView { pose: Some(pose), freshness: fresh(30, 0.2), source: "depth camera".into() }
+    BodyView { pose: Some(pose), freshness: at.fresh(30, 0.2), source: "depth camera".into() }
 }
 
 fn strategy(kind: StrategyKind, energies: &[f64], reachability: f64, inside: f64, comfort: f64) -> StrategyView {
@@ -175,11 +187,11 @@ fn strategy(kind: StrategyKind, energies: &[f64], reachability: f64, inside: f64
     }
 }
 
-fn topic(name: &str, kind: &str, rate: f64, deadline: f64) -> TopicHealth {
+fn topic(at: Moment, name: &str, kind: &str, rate: f64, deadline: f64) -> TopicHealth {
     TopicHealth {
         name: name.into(),
         kind: kind.into(),
-        freshness: fresh(6, deadline),
+        freshness: at.fresh(6, deadline),
         rate,
         expected: (rate * 0.9, rate * 1.1),
         gap: 1.3 / rate,
@@ -191,17 +203,17 @@ fn topic(name: &str, kind: &str, rate: f64, deadline: f64) -> TopicHealth {
     }
 }
 
-fn topics() -> Vec<TopicHealth> {
-    let mut depth = topic("/camera/depth/image_raw", "sensor_msgs/Image", 30.0, 0.2);
+fn topics(at: Moment) -> Vec<TopicHealth> {
+    let mut depth = topic(at, "/camera/depth/image_raw", "sensor_msgs/Image", 30.0, 0.2);
     (depth.rate, depth.drops) = (18.2, 12);
-    let mut colour = topic("/camera/rgb/image_raw", "sensor_msgs/Image", 30.0, 0.2);
+    let mut colour = topic(at, "/camera/rgb/image_raw", "sensor_msgs/Image", 30.0, 0.2);
     (colour.freshness.last, colour.required) = (None, false);
     colour.publishers.clear();
     vec![
-        topic("/robot/limb/left/endpoint_state", "baxter_core_msgs/EndpointState", 100.0, 0.05),
-        topic("/robot/limb/right/endpoint_state", "baxter_core_msgs/EndpointState", 100.0, 0.05),
-        topic("/robot/joint_states", "sensor_msgs/JointState", 100.0, 0.05),
-        topic("/robot/state", "baxter_core_msgs/AssemblyState", 100.0, 0.25),
+        topic(at, "/robot/limb/left/endpoint_state", "baxter_core_msgs/EndpointState", 100.0, 0.05),
+        topic(at, "/robot/limb/right/endpoint_state", "baxter_core_msgs/EndpointState", 100.0, 0.05),
+        topic(at, "/robot/joint_states", "sensor_msgs/JointState", 100.0, 0.05),
+        topic(at, "/robot/state", "baxter_core_msgs/AssemblyState", 100.0, 0.25),
         depth,
         colour,
     ]
@@ -241,7 +253,7 @@ fn settings() -> Vec<SettingView> {
     ]
 }
 
-fn log() -> crate::snapshot::History<LogLine> {
+fn log(at: Moment) -> crate::snapshot::History<LogLine> {
     let mut log = crate::snapshot::History::new(1000);
     let texts = [
         (Level::Information, "trial", "iteration 1 of the right arm: 22.2 N in 3 resistances"),
@@ -255,7 +267,7 @@ fn log() -> crate::snapshot::History<LogLine> {
         if let Some((level, source, text)) = texts.get(index) {
             log.push(LogLine {
                 id,
-                stamp: ago((60 - id) * 500),
+                stamp: at.ago((60 - id) * 500),
                 level: *level,
                 source: (*source).into(),
                 text: (*text).into(),
@@ -265,16 +277,17 @@ fn log() -> crate::snapshot::History<LogLine> {
     log
 }
 
-fn receipts() -> crate::snapshot::History<ReceiptLine> {
+fn receipts(at: Moment) -> crate::snapshot::History<ReceiptLine> {
     let mut receipts = crate::snapshot::History::new(100);
-    let line = |milliseconds, receipt| ReceiptLine { stamp: ago(milliseconds), origin: Origin::OperatorKey, receipt };
+    let line =
+        |milliseconds, receipt| ReceiptLine { stamp: at.ago(milliseconds), origin: Origin::OperatorKey, receipt };
     receipts.push(line(9000, CommandReceipt::refused(Command::Tare(Side::Right), "the arm moves: hold first")));
     let command = Command::SelectStrategy(StrategyKind::Multimodal);
     receipts.push(line(2100, CommandReceipt::accepted(command, "at the next way-point")));
     receipts
 }
 
-fn timeline() -> crate::snapshot::History<TimelineEvent> {
+fn timeline(at: Moment) -> crate::snapshot::History<TimelineEvent> {
     let mut timeline = crate::snapshot::History::new(500);
     let events = [
         (55_000, None, TimelineKind::Step(2)),
@@ -285,16 +298,16 @@ fn timeline() -> crate::snapshot::History<TimelineEvent> {
         (9_000, Some(Side::Right), TimelineKind::Iteration(3)),
         (4_000, Some(Side::Right), TimelineKind::Resistance),
     ];
-    timeline.extend(events.map(|(milliseconds, side, kind)| TimelineEvent { stamp: ago(milliseconds), side, kind }));
+    timeline.extend(events.map(|(milliseconds, side, kind)| TimelineEvent { stamp: at.ago(milliseconds), side, kind }));
     timeline
 }
 
-fn stop(snapshot: &mut Snapshot) {
+fn stop(snapshot: &mut Snapshot, at: Moment) {
     snapshot.stop = StopView {
         latched: true,
-        requested_at: Some(ago(3000)),
-        sent_at: Some(ago(2999)),
-        confirmed_at: Some(ago(2988)),
+        requested_at: Some(at.ago(3000)),
+        sent_at: Some(at.ago(2999)),
+        confirmed_at: Some(at.ago(2988)),
         cause: "the operator's key".into(),
     };
     if let Some(state) = &mut snapshot.robot.state {
@@ -304,14 +317,14 @@ fn stop(snapshot: &mut Snapshot) {
     snapshot.trial.phase = TrialPhase::Stopped;
     snapshot.trial.next = None;
     snapshot.trial.hold_cause = "emergency stop by the operator".into();
-    snapshot.timeline.push(TimelineEvent { stamp: ago(3000), side: None, kind: TimelineKind::Stop });
+    snapshot.timeline.push(TimelineEvent { stamp: at.ago(3000), side: None, kind: TimelineKind::Stop });
 }
 
-fn fail(snapshot: &mut Snapshot) {
+fn fail(snapshot: &mut Snapshot, at: Moment) {
     snapshot.stop = StopView {
         latched: true,
-        requested_at: Some(ago(700)),
-        sent_at: Some(ago(699)),
+        requested_at: Some(at.ago(700)),
+        sent_at: Some(at.ago(699)),
         confirmed_at: None,
         cause: "safety: right force 38.2 N is beyond 35 N".into(),
     };
@@ -327,9 +340,9 @@ fn fail(snapshot: &mut Snapshot) {
     }
 }
 
-fn empty() -> Snapshot {
+fn empty(at: Moment) -> Snapshot {
     Snapshot {
-        now: NOW,
+        now: at.0,
         master: MasterView { uri: "http://localhost:11311".into(), connected: false, text: "never answered".into() },
         checks: checks(Verdict::Fault).into(),
         ..Snapshot::default()

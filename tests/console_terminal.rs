@@ -1,0 +1,186 @@
+//! The real program in a pseudo-terminal: it draws, resizes, stops at a key, and gives the terminal back on quitting, on
+//! SIGTERM and SIGHUP, and after a panic, in the order stop the robot, restore the terminal, tell.
+
+use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::Command;
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How long a busy machine may take for what a person would see at once.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// What gives the screen back to the shell.
+const LEAVE: &str = "\u{1b}[?1049l";
+/// What shows the cursor again.
+const CURSOR: &str = "\u{1b}[?25h";
+
+/// A program on a terminal of its own.
+struct Session {
+    child: Box<dyn Child + Send + Sync>,
+    terminal: Box<dyn MasterPty + Send>,
+    keys: Box<dyn Write + Send>,
+    output: Receiver<Vec<u8>>,
+    seen: String,
+}
+
+impl Session {
+    fn start(program: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Self {
+        let size = PtySize { rows: 40, cols: 120, pixel_width: 0, pixel_height: 0 };
+        let pair = native_pty_system().openpty(size).unwrap();
+        let mut command = CommandBuilder::new(program);
+        command.args(arguments);
+        for (name, value) in [("LANG", "C.UTF-8"), ("TERM", "xterm-256color")].iter().chain(variables) {
+            command.env(name, value);
+        }
+        let child = pair.slave.spawn_command(command).unwrap();
+        let mut reader = pair.master.try_clone_reader().unwrap();
+        let keys = pair.master.take_writer().unwrap();
+        let (sender, output) = channel();
+        thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while let Ok(count @ 1..) = reader.read(&mut bytes) {
+                if sender.send(bytes[..count].to_vec()).is_err() {
+                    return;
+                }
+            }
+        });
+        Self { child, terminal: pair.master, keys, output, seen: String::new() }
+    }
+
+    fn practise() -> Self {
+        let mut session = Self::start(Path::new(env!("CARGO_BIN_EXE_valet")), &["keys", "--practise"], &[]);
+        session.wait_for("EMERGENCY");
+        session
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).unwrap();
+        self.keys.flush().unwrap();
+    }
+
+    /// Reads until a text has come, from where the last wait ended.
+    fn wait_for(&mut self, text: &str) {
+        let start = Instant::now();
+        loop {
+            if let Some(place) = self.seen.find(text) {
+                self.seen.drain(..place + text.len());
+                return;
+            }
+            let last = self.seen.len().saturating_sub(1000);
+            assert!(start.elapsed() < PATIENCE, "{text:?} did not come; seen last: {:?}", self.seen.get(last..));
+            if let Ok(bytes) = self.output.recv_timeout(Duration::from_millis(100)) {
+                self.seen.push_str(&String::from_utf8_lossy(&bytes));
+            }
+        }
+    }
+
+    fn signal(&self, name: &str) {
+        let id = self.child.process_id().unwrap().to_string();
+        assert!(Command::new("kill").args(["-s", name, &id]).status().unwrap().success());
+    }
+
+    /// Waits for the end; returns the exit code and everything that was not read yet.
+    fn end(mut self) -> (u32, String) {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                thread::sleep(Duration::from_millis(100));
+                while let Ok(bytes) = self.output.try_recv() {
+                    self.seen.push_str(&String::from_utf8_lossy(&bytes));
+                }
+                return (status.exit_code(), self.seen);
+            }
+            thread::sleep(Duration::from_millis(20));
+        }
+        self.child.kill().unwrap();
+        panic!("the program did not end; seen: {:?}", self.seen);
+    }
+}
+
+fn assert_restored(seen: &str) {
+    assert!(seen.contains(LEAVE) && seen.contains(CURSOR), "the terminal was not given back: {seen:?}");
+}
+
+#[test]
+fn it_draws_resizes_stops_at_the_key_and_gives_the_terminal_back() {
+    let mut session = Session::practise();
+    session.wait_for("red button");
+    session.terminal.resize(PtySize { rows: 12, cols: 60, pixel_width: 0, pixel_height: 0 }).unwrap();
+    session.wait_for("3.1:");
+    session.terminal.resize(PtySize { rows: 1, cols: 1, pixel_width: 0, pixel_height: 0 }).unwrap();
+    session.terminal.resize(PtySize { rows: 40, cols: 120, pixel_width: 0, pixel_height: 0 }).unwrap();
+    session.wait_for("(table");
+    session.press(" ");
+    session.wait_for("confirmed by the robot");
+    session.press("qy\r");
+    let (code, seen) = session.end();
+    assert_restored(&seen);
+    assert_eq!(code, 0);
+}
+
+#[test]
+fn sigterm_and_sighup_give_the_terminal_back() {
+    for name in ["TERM", "HUP"] {
+        let session = Session::practise();
+        session.signal(name);
+        let (_, seen) = session.end();
+        assert_restored(&seen);
+    }
+}
+
+#[test]
+fn control_z_is_refused_while_an_arm_may_move() {
+    let mut session = Session::practise();
+    session.press("\u{1a}");
+    session.wait_for("not while an arm may move");
+    session.press("\u{3}\u{3}");
+    let (_, seen) = session.end();
+    assert_restored(&seen);
+}
+
+#[test]
+fn without_a_terminal_it_says_what_to_do() {
+    let output = Command::new(env!("CARGO_BIN_EXE_valet")).args(["keys", "--practise"]).output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && text.contains("--headless"), "{text}");
+    assert!(output.stdout.is_empty());
+}
+
+/// Variable by which this test program, started by itself in a pseudo-terminal, knows that it is to panic.
+const PANICKING: &str = "VALET_TEST_PANICS";
+/// What the made-up robot says when it is stopped.
+const STOPPED: &str = "the robot was told to stop";
+
+#[test]
+fn a_panic_stops_the_robot_first_then_restores_the_terminal_then_tells() {
+    if std::env::var_os(PANICKING).is_some() {
+        panic_in_the_console();
+    }
+    let arguments = ["--exact", "a_panic_stops_the_robot_first_then_restores_the_terminal_then_tells", "--nocapture"];
+    let program = std::env::current_exe().unwrap();
+    let (_, seen) = Session::start(&program, &arguments, &[(PANICKING, "1")]).end();
+    assert_restored(&seen);
+    let place = |text: &str| seen.find(text).unwrap_or_else(|| panic!("{text:?} is missing in {seen:?}"));
+    let (stopped, restored, told) = (place(STOPPED), place(LEAVE), place("the drawing broke"));
+    assert!(stopped < restored && restored < told, "{stopped} {restored} {told}: {seen:?}");
+}
+
+/// Runs a console whose snapshots break; its stop says so on the terminal, where the order of things can be read.
+fn panic_in_the_console() -> ! {
+    use valet::console::{ConsoleOptions, run};
+    let stop = || {
+        print!("{STOPPED}");
+        std::io::stdout().flush().unwrap();
+    };
+    let mut turns = 0;
+    let snapshots = move || {
+        turns += 1;
+        assert!(turns < 5, "the drawing broke");
+        None
+    };
+    let commands = |_| Ok(());
+    let left = run(snapshots, commands, std::sync::Arc::new(stop), None, &ConsoleOptions::default());
+    panic!("the console was left without a panic: {left:?}");
+}
