@@ -8,9 +8,11 @@ mod error;
 mod layers;
 mod places;
 mod profile;
+mod settings;
 mod version;
 
 pub use error::ConfigError;
 pub use layers::layered;
 pub use places::{Places, profile_names};
 pub use profile::{Consent, Garment, LearnedPath, LoadedProfile, Profile};
+pub use settings::{RecordingSettings, Settings};

@@ -30,6 +30,7 @@ pub mod headless;
 pub mod kinematics;
 pub mod modelling;
 pub mod planning;
+pub mod record;
 pub mod report;
 pub mod robot;
 pub mod safety;

@@ -1,0 +1,74 @@
+//! What can be wrong with a journal: file, offset, and what can still be read.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a journal cannot be written or read at all.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum JournalError {
+    /// The file cannot be read or written.
+    #[error("{path}: {source}. Check that the folder exists, can be written to and has space")]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The container cannot be written.
+    #[error("{path}: the journal cannot be written: {reason}")]
+    Container {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The file is not a journal of valet.
+    #[error("{path} is not a trial that valet recorded: {reason}")]
+    Foreign {
+        /// Which file.
+        path: PathBuf,
+        /// What it is instead.
+        reason: String,
+    },
+    /// The journal has a later format than this valet knows.
+    #[error("{path}: the journal has format {found}, but this valet knows formats up to {known}: use a newer valet")]
+    Future {
+        /// Which file.
+        path: PathBuf,
+        /// Its format.
+        found: u32,
+        /// The newest format that is known.
+        known: u32,
+    },
+}
+
+impl JournalError {
+    pub(super) fn file(path: &Path, source: std::io::Error) -> Self {
+        Self::File { path: path.to_path_buf(), source }
+    }
+
+    pub(super) fn container(path: &Path, reason: impl fmt::Display) -> Self {
+        Self::Container { path: path.to_path_buf(), reason: reason.to_string() }
+    }
+
+    pub(super) fn foreign(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Foreign { path: path.to_path_buf(), reason: reason.into() }
+    }
+}
+
+/// A part of a journal that could not be read; the rest was.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Where in the file, in bytes from its start.
+    pub offset: u64,
+    /// What is wrong there, and what it means.
+    pub what: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "at byte {}: {}", self.offset, self.what)
+    }
+}
