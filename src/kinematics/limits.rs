@@ -106,7 +106,8 @@ impl Default for MotionLimits {
     /// public MoveIt configuration for Baxter (`baxter_moveit_config`, `joint_limits.yaml`: 0.75 rad/s shoulder to elbow,
     /// 1.0 rad/s wrist, 2.0 rad/s²), turning speed that of published hand-over work with a Baxter
     /// (`human_robot_collaboration`: 0.5 rad/s). Acceleration and jerk bring a gripper from 0.10 m/s to rest in 0.17 s
-    /// within 9 mm: the way that a sleeve is pulled on after its catch was found. Gripper distances keep the tool bodies apart and the back panel of a vest (0.40 to 0.50 m) slack.
+    /// within 9 mm: the way that a sleeve is pulled on after its catch was found. Gripper distances keep the tool bodies apart and the garment slack: a wide
+    /// sleeveless jacket has 0.45 m of back and twice 0.23 m of armhole depth from one gripper to the other.
     fn default() -> Self {
         Self {
             speed: 0.10,
@@ -116,7 +117,7 @@ impl Default for MotionLimits {
             joint_speed: JointVector::from_column_slice(&[0.75, 0.75, 0.75, 0.75, 1.0, 1.0, 1.0]),
             joint_acceleration: JointVector::repeat(2.0),
             minimum_gripper_distance: 0.10,
-            maximum_gripper_distance: 0.50,
+            maximum_gripper_distance: 0.90,
             minimum_duration: Duration::from_secs(3),
             workspace: Workspace { lower: Point::new(0.25, -1.0, -0.55), upper: Point::new(1.15, 1.0, 0.75) },
         }

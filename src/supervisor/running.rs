@@ -15,10 +15,6 @@ use crate::strategy::StrategyError;
 use crate::time::Stamp;
 use std::time::Duration;
 
-/// On the way to the start posture nobody wears the garment, and joints do not lead the grippers along straight lines: they
-/// may be this much further apart then, in metres. No other rule is relaxed.
-const APPROACH_SLACK: f64 = 0.15;
-
 impl Supervisor {
     /// Starts the motion that the trial asks for, where none is under way.
     pub(super) fn give_orders(&mut self, now: Stamp) {
@@ -55,7 +51,6 @@ impl Supervisor {
         let trial = self.trial.as_ref();
         if let Some(trial) = trial.filter(|trial| matches!(trial.stage(), Stage::StandBack)) {
             let orientations = PerSide::from_fn(|_| dressing_orientation());
-            limits.maximum_gripper_distance += APPROACH_SLACK;
             let posture = start_postures(&self.model, &scene, &trial.stages(), &orientations, &limits)?;
             return plan_postures(&self.model, &scene, start, &posture.map(|_, joints| Some(*joints)), &limits);
         }

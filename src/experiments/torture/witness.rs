@@ -271,9 +271,11 @@ impl Witness {
         self.arms.get_mut(side).moved = Some(now);
         let seconds = now.since(before.at).as_secs_f64().max(0.01);
         let speed = self.model.arm(side).limits().speed;
-        if let Some((index, joint)) = step.iter().enumerate().find(|(index, joint)| {
-            speed.get(*index).is_some_and(|limit| joint.abs() / seconds > limit * 1.01)
-        }) {
+        if let Some((index, joint)) = step
+            .iter()
+            .enumerate()
+            .find(|(index, joint)| speed.get(*index).is_some_and(|limit| joint.abs() / seconds > limit * 1.01))
+        {
             return Err((Invariant::Speed, format!("{side} joint {index} at {:.2} rad/s", joint / seconds)));
         }
         let metres = (sent.tip - before.tip).norm() / seconds;
