@@ -68,7 +68,12 @@ impl Supervisor {
 
     /// Samples the motion, sends what comes of it and reports arrivals.
     pub(super) fn move_on(&mut self, now: Stamp, span: Duration) {
-        if self.mode == Mode::Idle || !self.protection.may_command(now) {
+        if self.mode == Mode::Idle {
+            return;
+        }
+        if !self.protection.may_command(now) {
+            // The rest of a motion, be it only its braking, must not come when the robot can be commanded again.
+            self.drive.drop_motion();
             return;
         }
         let arrival = self.drive.tick(span);

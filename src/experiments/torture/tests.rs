@@ -1,3 +1,25 @@
-//! The witness sees what it should, and a first few hundred trials.
+//! A first few trials, and that a seed repeats.
 
 use super::*;
+
+#[test]
+fn s_37_a_seed_repeats_every_decision_byte_for_byte() {
+    for seed in [3, 63] {
+        assert_eq!(torture(seed), torture(seed));
+    }
+}
+
+#[test]
+fn trials_with_faults_break_no_invariant() {
+    for seed in 100..110 {
+        let result = torture(seed);
+        assert_eq!(result.violation, None, "seed {seed}");
+        assert!(result.steps > 100);
+    }
+}
+
+#[test]
+fn s_40_braking_that_was_cut_off_does_not_come_later() {
+    // The robot's state falls silent while the arms brake; when it comes back, nothing may move by itself.
+    assert_eq!(torture(63).violation, None);
+}

@@ -30,6 +30,9 @@ const ONE_MOTION: Duration = Duration::from_millis(200);
 /// How far a first setpoint may be from where the arm is, in radians on a joint.
 const FIRST_STEP: f64 = 0.3;
 
+/// A joint at its stop may be reported beyond its range by a step of its encoder (2 pi / 16384 rad), and is then held there.
+const RANGE_TOLERANCE: f64 = 4e-4;
+
 /// What may never be broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -249,7 +252,7 @@ impl Witness {
             return Err((Invariant::RobotIsEnabled, format!("a setpoint while the robot says {robot:?}")));
         }
         let limits = self.model.arm(side).limits();
-        if joints.iter().any(|joint| !joint.is_finite()) || limits.breach(joints, 1e-4).is_some() {
+        if joints.iter().any(|joint| !joint.is_finite()) || limits.breach(joints, RANGE_TOLERANCE).is_some() {
             return Err((Invariant::JointRange, format!("{side} {joints:?}")));
         }
         let tip: Point = self.model.arm(side).forward(joints).translation.vector.into();
