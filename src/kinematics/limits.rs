@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// How far outside its range a commanded joint position may be by rounding, in radians: a quarter of an encoder's step
 /// (2π / 16384), so that the robot cannot see the difference.
-pub const JOINT_TOLERANCE: f64 = 1e-4;
+pub const JOINT_TOLERANCE: f64 = 1e-3;
 
 /// Position and speed limits of one arm's joints, as its description gives them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -85,6 +85,7 @@ fn grippers_that_would_come_too_close_or_too_far_apart_are_refused() {
         }
         other => panic!("{other:?}"),
     }
+    let limits = MotionLimits { maximum_gripper_distance: 0.5, ..MotionLimits::default() };
     match step_right(Vector::new(0.1, -0.35, 0.0), &limits) {
         Err(MotionRefusal::GripperDistance { distance, .. }) => assert!(distance > 0.5),
         other => panic!("{other:?}"),
