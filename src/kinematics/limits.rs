@@ -7,8 +7,9 @@ use crate::geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// How far outside its range a commanded joint position may be by rounding, in radians: a quarter of an encoder's step
-/// (2π / 16384), so that the robot cannot see the difference.
+/// How far outside its range a commanded joint position may be, in radians: where a joint runs along its limit, the spline
+/// through the planned positions swings a little beyond. Less than three of the encoder's steps (2π / 16384), and a ninth
+/// of the 0.5° to which the robot itself controls a joint.
 pub const JOINT_TOLERANCE: f64 = 1e-3;
 
 /// Position and speed limits of one arm's joints, as its description gives them.
