@@ -8,6 +8,7 @@ mod error;
 mod layers;
 mod places;
 mod profile;
+mod secret;
 mod settings;
 mod version;
 
@@ -15,4 +16,5 @@ pub use error::ConfigError;
 pub use layers::layered;
 pub use places::{Places, profile_names};
 pub use profile::{Consent, Garment, LearnedPath, LoadedProfile, Profile};
+pub use secret::{Key, SecretError, read_secret, write_whole};
 pub use settings::{RecordingSettings, Settings};

@@ -2,12 +2,14 @@
 
 use super::exit::Failure;
 use super::output::Output;
+use crate::config::{LoadedProfile, Places, Settings};
 use crate::headless::{Report, ScriptedOperator, TrialResult, VirtualTrial};
+use crate::record::{Header, JournalWriter};
 use crate::sim::world::WorldSetup;
 use crate::snapshot::{Outcome, Watermark};
 use crate::strategy::StrategyKind;
 use crate::supervisor::Setup;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How often a run without a screen goes on by itself after a hold before it gives the trial up.
@@ -77,15 +79,28 @@ fn run_in_virtual_time(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<TrialResult, Failure> {
-    let strategy = chosen_strategy(arguments)?;
-    let mut setup = Setup { seed, watermark: Watermark::Demo, ..Setup::default() };
-    setup.settings.strategy = strategy;
-    let world = WorldSetup { seed, ..WorldSetup::default() };
+    let (person, mut setup) = person_and_setup(arguments, seed)?;
+    if let Some(strategy) = chosen_strategy(arguments)? {
+        setup.settings.strategy = strategy;
+    }
+    let strategy = setup.settings.strategy;
+    let profile = &person.profile;
+    let world = WorldSetup {
+        seed,
+        person: profile.simulated.clone().unwrap_or_default(),
+        garment: profile.garment(None).cloned().unwrap_or_default(),
+        ..WorldSetup::default()
+    };
     output.line(format!("seed {seed}, strategy {strategy}"))?;
+    let mut journal = arguments.record.as_ref().map(|folder| begin_journal(folder, &setup, &person)).transpose()?;
+    let mut recorded = Ok(());
     let mut trial = VirtualTrial::new(setup, &world).map_err(Failure::configuration)?;
     let mut operator = ScriptedOperator::new(CONTINUES);
     let mut printed = Ok(());
-    let result = trial.run(&mut operator, LONGEST_TRIAL, |now, _, effects| {
+    let result = trial.run(&mut operator, LONGEST_TRIAL, |now, input, effects| {
+        if let Some(journal) = journal.as_mut().filter(|_| recorded.is_ok()) {
+            recorded = journal.step(now, input, effects, 0);
+        }
         for report in effects.iter().filter_map(Report::of) {
             if printed.is_ok() {
                 printed = print_report(output, &report, now.seconds());
@@ -93,9 +108,29 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
         }
     });
     printed?;
+    recorded.map_err(Failure::fault)?;
+    if let Some(journal) = journal {
+        let path = journal.finish().map_err(Failure::fault)?;
+        output.line(format!("recorded in {}", path.display()))?;
+    }
     output.line(format!("the trial is {}: {}", result.outcome.words(), result.reason))?;
     output.event(&result.event(strategy.name(), seed, trial.trial_seconds()))?;
     Ok(result)
+}
+
+/// The person of the trial and what the core starts with: the file of settings, the profile over it.
+fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, Setup), Failure> {
+    let places = Places::of_this_machine();
+    let settings = Settings::find(None, &places).map_err(Failure::configuration)?;
+    let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
+    let person = LoadedProfile::find(name, &places).map_err(Failure::configuration)?;
+    let setup = settings.setup_for(&person, seed, Watermark::Demo).map_err(Failure::configuration)?;
+    Ok((person, setup))
+}
+
+fn begin_journal(folder: &Path, setup: &Setup, person: &LoadedProfile) -> Result<JournalWriter, Failure> {
+    let header = Header::of(setup, &person.text, 0).map_err(Failure::Fault)?;
+    JournalWriter::create(folder, &header).map_err(Failure::configuration)
 }
 
 fn print_report(output: &mut Output, report: &Report, seconds: f64) -> Result<(), Failure> {
@@ -103,11 +138,12 @@ fn print_report(output: &mut Output, report: &Report, seconds: f64) -> Result<()
     report.event.as_ref().map_or(Ok(()), |event| output.event(event))
 }
 
-fn chosen_strategy(arguments: &Arguments) -> Result<StrategyKind, Failure> {
-    let Some(name) = &arguments.strategy else { return Ok(StrategyKind::Force) };
+fn chosen_strategy(arguments: &Arguments) -> Result<Option<StrategyKind>, Failure> {
+    let Some(name) = &arguments.strategy else { return Ok(None) };
     let names: Vec<_> = StrategyKind::ALL.iter().map(|kind| kind.name()).collect();
     let found = StrategyKind::ALL.into_iter().find(|kind| kind.name() == name);
-    found.ok_or_else(|| Failure::Configuration(format!("--strategy {name} is none of {}", names.join(", "))))
+    let none = || Failure::Configuration(format!("--strategy {name} is none of {}", names.join(", ")));
+    found.map(Some).ok_or_else(none)
 }
 
 fn verdict(result: &TrialResult) -> Result<(), Failure> {

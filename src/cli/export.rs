@@ -1,11 +1,60 @@
-//! `valet export`: a recorded trial as a rosbag or CSV files.
+//! `valet export`: a recorded trial as a rosbag or as tables.
 
 use super::exit::Failure;
+use super::output::Output;
+use crate::record::{Reading, write_bag, write_csv};
+use serde::Serialize;
+use std::path::PathBuf;
 
 /// A recorded trial as a rosbag or CSV files.
-#[derive(Debug, Default, clap::Args)]
-pub(super) struct Arguments {}
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// The journal (`*.mcap`).
+    trial: PathBuf,
+    /// `bag` (rosbag 2.0, one file) or `csv` (a folder of tables).
+    #[arg(long, value_enum, default_value_t = Format::Bag)]
+    format: Format,
+    /// The file or folder to write; beside the trial where it is not given.
+    #[arg(long, value_name = "PATH")]
+    out: Option<PathBuf>,
+    /// Leave out free text and absolute time.
+    #[arg(long)]
+    anonymous: bool,
+    /// Print one JSON object a line.
+    #[arg(long)]
+    json: bool,
+}
 
-pub(super) fn run(_arguments: &Arguments) -> Result<(), Failure> {
-    Err(Failure::Fault("export: not built yet".into()))
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    Bag,
+    Csv,
+}
+
+#[derive(Serialize)]
+struct Exported {
+    event: &'static str,
+    out: PathBuf,
+    steps: u64,
+    problems: Vec<String>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut output = Output::new(arguments.json);
+    let beside = match arguments.format {
+        Format::Bag => arguments.trial.with_extension("bag"),
+        Format::Csv => arguments.trial.with_extension("csv"),
+    };
+    let out = arguments.out.clone().unwrap_or(beside);
+    let reading: Reading = match arguments.format {
+        Format::Bag => write_bag(&arguments.trial, &out, arguments.anonymous),
+        Format::Csv => write_csv(&arguments.trial, &out, arguments.anonymous),
+    }
+    .map_err(Failure::configuration)?;
+    for problem in &reading.problems {
+        output.line(format!("not readable and left out: {problem}"))?;
+    }
+    output.line(format!("{} steps written to {}", reading.steps, out.display()))?;
+    let problems = reading.problems.iter().map(ToString::to_string).collect();
+    output.event(&Exported { event: "export", out, steps: reading.steps, problems })
 }
