@@ -68,10 +68,10 @@ impl Chain {
     /// fixed transformation from the last link to the tip.
     ///
     /// Axes other than z are folded into the transformations, so that the inner loop has one case only.
-    pub(super) fn new(joints: [(Pose, Vector3<f64>); JOINTS], tip: &Pose) -> Self {
+    pub(super) fn new(joints: &[(Pose, Vector3<f64>); JOINTS], tip: &Pose) -> Self {
         let mut pending = UnitQuaternion::identity();
-        let origins = joints.map(|(origin, axis)| {
-            let to_axis = rotation_from_z(&axis);
+        let origins = joints.each_ref().map(|(origin, axis)| {
+            let to_axis = rotation_from_z(axis);
             let folded = pending * origin * to_axis;
             pending = to_axis.inverse();
             Frame::from_pose(&folded)

@@ -1,28 +1,69 @@
 //! The damped least-squares step of an arm, on arrays of fixed size: the inner loop of inverse kinematics.
 //!
 //! Solves (J Jᵀ + λ 1) y = e over the free joints and returns Jᵀ y. The matrix is symmetric and positive definite for λ > 0, so
-//! an LDLᵀ factorisation without pivoting is stable. Half the work of a general product and about a third of its time.
+//! a Cholesky factorisation without roots and without pivoting is stable. Half the work of a general product and about a third of its time.
 #![expect(clippy::indexing_slicing, reason = "all indices run over the constant sizes of the arrays")]
 #![expect(clippy::needless_range_loop, reason = "triangular loops are read by their indices")]
 
 use super::JointVector;
 use super::chain::{JOINTS, Jacobian};
+use super::limits::JointLimits;
 use nalgebra::Vector6;
 
 /// Rows of a Jacobian.
 const ROWS: usize = 6;
 
+/// Longest step of a joint in radians: beyond it the linear model says nothing.
+const STEP_CAP: f64 = 1.0;
+/// How often joints that reach the end of their range hand their share on to the others in one step.
+const PASSES: usize = 3;
+
+/// Joint positions after a damped least-squares step for a twist, inside the joint limits. A joint that would leave its range is
+/// put to the end of it, and the others take over what is missing.
+pub(super) fn projected_step(
+    limits: &JointLimits,
+    jacobian: &Jacobian,
+    joints: &JointVector,
+    twist: Vector6<f64>,
+    damping: f64,
+) -> JointVector {
+    let mut remaining = twist;
+    let mut free = [true; JOINTS];
+    let mut next = *joints;
+    for _ in 0..PASSES {
+        let step = damped_step(jacobian, free, &remaining, damping);
+        let scale = (STEP_CAP / step.amax()).min(1.0);
+        let mut blocked = false;
+        for index in 0..JOINTS {
+            if !free[index] {
+                continue;
+            }
+            let wanted = joints[index] + step[index] * scale;
+            next[index] = wanted.clamp(limits.lower[index], limits.upper[index]);
+            if (next[index] - wanted).abs() > 0.0 {
+                free[index] = false;
+                blocked = true;
+                remaining -= jacobian.column(index) * (next[index] - joints[index]);
+            }
+        }
+        if !blocked {
+            break;
+        }
+    }
+    next
+}
+
 /// The step of the free joints for a twist; zero for joints that are not free.
 pub(super) fn damped_step(
     jacobian: &Jacobian,
-    free: &[bool; JOINTS],
+    free: [bool; JOINTS],
     twist: &Vector6<f64>,
     damping: f64,
 ) -> JointVector {
     let columns: &[[f64; ROWS]; JOINTS] = &jacobian.data.0;
     let mut gram = [[0.0; ROWS]; ROWS];
     for (column, free) in columns.iter().zip(free) {
-        if *free {
+        if free {
             for row in 0..ROWS {
                 for other in 0..=row {
                     gram[row][other] += column[row] * column[other];
@@ -36,7 +77,7 @@ pub(super) fn damped_step(
     let solved = solve(&mut gram, twist.data.0[0]);
     let mut step = JointVector::zeros();
     for ((value, column), free) in step.iter_mut().zip(columns).zip(free) {
-        if *free {
+        if free {
             *value = (0..ROWS).map(|row| column[row] * solved[row]).sum();
         }
     }
@@ -101,7 +142,7 @@ mod tests {
             let twist = Vector6::from(twist);
             let gram = open * open.transpose() + Matrix6::identity() * damping;
             let expected = open.transpose() * gram.lu().solve(&twist).unwrap();
-            let step = damped_step(&jacobian, &free, &twist, damping);
+            let step = damped_step(&jacobian, free, &twist, damping);
             prop_assert!((step - expected).amax() < 1e-7 * (1.0 + expected.amax()));
         }
     }

@@ -16,6 +16,9 @@ pub const JOINT_SUFFIXES: [&str; JOINTS] = ["s0", "s1", "e0", "e1", "w0", "w1", 
 /// The frame in which valet works: the robot's root link.
 const BASE: &str = "base";
 
+/// What a link is fixed to: the robot's body (`None`), or a moving link (0 to 6) of an arm.
+pub(super) type Holder = Option<(Side, usize)>;
+
 /// A parsed description.
 #[derive(Clone, Debug)]
 pub(super) struct Description {
@@ -59,16 +62,22 @@ impl Description {
         let mut limits =
             JointLimits { lower: JointVector::zeros(), upper: JointVector::zeros(), speed: JointVector::zeros() };
         let mut pending = Pose::identity();
-        let mut index = 0;
         for joint in &above {
             pending *= pose_of(&joint.origin);
-            if let (true, Some(slot)) = (is_moving(joint), origins.get_mut(index)) {
+            let index = names.iter().position(|name| name == &joint.name).filter(|_| is_moving(joint));
+            if let Some((index, slot)) = index.and_then(|index| Some((index, origins.get_mut(index)?))) {
                 *slot = (std::mem::replace(&mut pending, Pose::identity()), Vector::from(joint.axis.xyz.0));
-                (limits.lower[index], limits.upper[index], limits.speed[index]) = checked_limits(joint)?;
-                index += 1;
+                let (lower, upper, speed) = checked_limits(joint)?;
+                for (vector, value) in
+                    [(&mut limits.lower, lower), (&mut limits.upper, upper), (&mut limits.speed, speed)]
+                {
+                    if let Some(slot) = vector.get_mut(index) {
+                        *slot = value;
+                    }
+                }
             }
         }
-        let hand = self.hand_offset(side, &above)?;
+        let hand = hand_offset(side, &above)?;
         Ok(ArmDescription { origins, hand, tip: pending, limits, names })
     }
 
@@ -94,7 +103,7 @@ impl Description {
 
     /// What a link is fixed to: the robot's body (`None`) or a moving link of an arm (0 to 6), and its pose in the frame that
     /// the arm's chain has for that link. `None` for links that hang from other joints, such as the head or a finger.
-    pub(super) fn holder(&self, link: &str) -> Result<Option<(Option<(Side, usize)>, Pose)>, ModelError> {
+    pub(super) fn holder(&self, link: &str) -> Result<Option<(Holder, Pose)>, ModelError> {
         let chain = self.chain_to(link)?;
         let fixed = chain.iter().rev().take_while(|joint| !is_moving(joint));
         let offset = fixed.fold(Pose::identity(), |pose, joint| pose_of(&joint.origin) * pose);
@@ -105,15 +114,6 @@ impl Description {
         });
         let unfolded = rotation_from_z(&Vector::from(joint.axis.xyz.0)).inverse();
         Ok(arm_link.map(|arm_link| (Some(arm_link), unfolded * offset)))
-    }
-
-    /// From the last moving link to the hand.
-    fn hand_offset(&self, side: Side, chain: &[&Joint]) -> Result<Pose, ModelError> {
-        let hand = format!("{side}_hand");
-        let end =
-            chain.iter().position(|joint| joint.child.link == hand).ok_or(ModelError::MissingLink { link: hand })?;
-        let offset = chain.iter().take(end + 1).rev().take_while(|joint| !is_moving(joint));
-        Ok(offset.fold(Pose::identity(), |pose, joint| pose_of(&joint.origin) * pose))
     }
 }
 
@@ -127,6 +127,14 @@ pub(super) fn pose_of(origin: &urdf_rs::Pose) -> Pose {
     let [x, y, z] = origin.xyz.0;
     let [roll, pitch, yaw] = origin.rpy.0;
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+}
+
+/// From the last moving link to the hand.
+fn hand_offset(side: Side, chain: &[&Joint]) -> Result<Pose, ModelError> {
+    let hand = format!("{side}_hand");
+    let end = chain.iter().position(|joint| joint.child.link == hand).ok_or(ModelError::MissingLink { link: hand })?;
+    let offset = chain.iter().take(end + 1).rev().take_while(|joint| !is_moving(joint));
+    Ok(offset.fold(Pose::identity(), |pose, joint| pose_of(&joint.origin) * pose))
 }
 
 fn check_joints(side: Side, chain: &[&Joint], names: &[String; JOINTS]) -> Result<(), ModelError> {
@@ -153,3 +161,6 @@ fn checked_limits(joint: &Joint) -> Result<(f64, f64, f64), ModelError> {
         Err(ModelError::Limits { joint: joint.name.clone(), lower, upper, speed })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,8 +6,8 @@
 //! No randomness is left when a pose is solved: the same target and seed give the same answer.
 
 use super::JointVector;
-use super::chain::{Chain, Frame, JOINTS, Jacobian};
-use super::damped::damped_step;
+use super::chain::{Chain, Frame, JOINTS};
+use super::damped::{damped_step, projected_step};
 use super::limits::JointLimits;
 use super::model::ArmModel;
 use crate::geometry::{Finite, Pose};
@@ -24,16 +24,19 @@ pub const TOLERANCE: f64 = 5e-6;
 pub(super) const PATH_TOLERANCE: f64 = 1e-9;
 /// Steps of one attempt. Those that succeed need about ten; 20 solved the most poses in the least time.
 const STEPS: usize = 20;
+/// Steps of an attempt of the second round, for the one pose in 30,000 that all short attempts miss.
+const PATIENT_STEPS: usize = 120;
+/// Attempts of the second round.
+const PATIENT_ATTEMPTS: usize = 32;
 /// Steps without progress before an attempt is given up.
-const STALLS: usize = 4;
-/// Longest step of a joint in radians: beyond it the linear model says nothing.
-const STEP_CAP: f64 = 1.0;
+const STALLS: usize = 3;
 /// Postures in the table.
-const TABLE_SIZE: usize = 256;
+const TABLE_SIZE: usize = 512;
 /// Two solutions are different where a joint differs by more than this, in radians.
 const DIFFERENT: f64 = 0.2;
-/// Metres that count as much as one radian when postures are compared with a target: about half the arm's reach.
-const METRES_PER_RADIAN: f64 = 0.4;
+/// Metres that count as much as one radian when postures are compared with a target: a quarter of the arm's reach took
+/// the fewest steps.
+const METRES_PER_RADIAN: f64 = 0.25;
 
 /// Why no joint positions were found.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -98,6 +101,39 @@ impl SeedTable {
     }
 }
 
+/// Where attempts start: the given seed and the table, those first whose pose is closest to the target.
+struct Candidates<'a> {
+    costs: [f64; TABLE_SIZE],
+    seed_cost: f64,
+    seed: JointVector,
+    table: &'a SeedTable,
+}
+
+impl<'a> Candidates<'a> {
+    fn new(arm: &'a ArmModel, target: &Pose, seed: JointVector) -> Self {
+        let mut costs = [f64::INFINITY; TABLE_SIZE];
+        for (cost, posture) in costs.iter_mut().zip(&arm.seeds.postures) {
+            *cost = posture.distance_squared(target);
+        }
+        Self { costs, seed_cost: Posture::new(&arm.chain, seed).distance_squared(target), seed, table: &arm.seeds }
+    }
+}
+
+impl Iterator for Candidates<'_> {
+    type Item = JointVector;
+
+    fn next(&mut self) -> Option<JointVector> {
+        let (index, cost) = self.costs.iter_mut().enumerate().min_by(|one, other| one.1.total_cmp(other.1))?;
+        if self.seed_cost <= *cost && self.seed_cost.is_finite() {
+            self.seed_cost = f64::INFINITY;
+            return Some(self.seed);
+        }
+        let posture = self.table.postures.get(index).filter(|_| cost.is_finite())?;
+        *cost = f64::INFINITY;
+        Some(posture.joints)
+    }
+}
+
 /// One attempt's end.
 enum Attempt {
     Reached(JointVector),
@@ -118,29 +154,14 @@ impl ArmModel {
         }
         let frame = Frame::from_pose(target);
         let seed = seed.zip_zip_map(&self.limits.lower, &self.limits.upper, f64::clamp);
-        let given = Posture::new(&self.chain, seed);
-        let mut costs = [(f64::INFINITY, 0_usize); TABLE_SIZE];
-        for (slot, (index, posture)) in costs.iter_mut().zip(self.seeds.postures.iter().enumerate()) {
-            *slot = (posture.distance_squared(target), index);
-        }
         let mut nearest = Nearest::default();
-        let mut used_seed = false;
-        for _ in 0..=TABLE_SIZE {
-            let (cost, index) =
-                *costs.iter().min_by(|left, right| left.0.total_cmp(&right.0)).unwrap_or(&(f64::INFINITY, 0));
-            let joints = if !used_seed && given.distance_squared(target) <= cost {
-                used_seed = true;
-                seed
-            } else {
-                if let Some(slot) = costs.get_mut(index) {
-                    slot.0 = f64::INFINITY;
-                }
-                self.seeds.postures.get(index).map_or(seed, |posture| posture.joints)
-            };
-            match self.attempt(&frame, joints, TOLERANCE) {
-                Attempt::Reached(joints) => return Ok(joints),
-                Attempt::Stalled(found) => {
-                    nearest.offer(found.joints, &found.error);
+        for (steps, attempts) in [(STEPS, TABLE_SIZE + 1), (PATIENT_STEPS, PATIENT_ATTEMPTS)] {
+            for joints in Candidates::new(self, target, seed).take(attempts) {
+                match self.attempt(&frame, joints, TOLERANCE, steps) {
+                    Attempt::Reached(joints) => return Ok(joints),
+                    Attempt::Stalled(found) => {
+                        nearest.offer(found.joints, &found.error);
+                    }
                 }
             }
         }
@@ -158,7 +179,7 @@ impl ArmModel {
             if found.len() >= count {
                 break;
             }
-            if let Attempt::Reached(joints) = self.attempt(&frame, seed.joints, PATH_TOLERANCE)
+            if let Attempt::Reached(joints) = self.attempt(&frame, seed.joints, PATH_TOLERANCE, STEPS)
                 && found.iter().all(|other| (joints - other).amax() > DIFFERENT)
             {
                 found.push(joints);
@@ -171,22 +192,22 @@ impl ArmModel {
     pub(super) fn free_motion(&self, joints: &JointVector, wanted: &JointVector) -> JointVector {
         let jacobian = self.chain.frames(joints).jacobian();
         let moved = jacobian * wanted;
-        wanted - damped_step(&jacobian, &[true; JOINTS], &moved, 1e-4)
+        wanted - damped_step(&jacobian, [true; JOINTS], &moved, 1e-4)
     }
 
     /// One attempt from a seed that is already close: the inner step of path tracking.
     pub(super) fn follow(&self, target: &Pose, seed: &JointVector) -> Option<JointVector> {
-        match self.attempt(&Frame::from_pose(target), *seed, PATH_TOLERANCE) {
+        match self.attempt(&Frame::from_pose(target), *seed, PATH_TOLERANCE, STEPS) {
             Attempt::Reached(joints) => Some(joints),
             Attempt::Stalled(_) => None,
         }
     }
 
-    fn attempt(&self, target: &Frame, mut joints: JointVector, tolerance: f64) -> Attempt {
+    fn attempt(&self, target: &Frame, mut joints: JointVector, tolerance: f64, steps: usize) -> Attempt {
         let mut best = Nearest::default();
         let mut damping = 1.0_f64;
         let mut stalls = 0;
-        for _ in 0..=STEPS {
+        for _ in 0..=steps {
             let frames = self.chain.frames(&joints);
             let error = twist_between(&frames.tip, target);
             if error.amax() <= tolerance {
@@ -196,51 +217,16 @@ impl ArmModel {
             if best.offer(joints, &error) {
                 damping = (damping * 0.5).max(1e-3);
             } else {
-                damping *= 4.0;
+                damping *= 2.0;
                 stalls += 1;
                 if stalls >= STALLS {
                     break;
                 }
             }
             let floor = 1e-6 + 0.01 * damping * size.min(1.0);
-            joints = self.projected_step(&frames.jacobian(), &joints, error, floor);
+            joints = projected_step(&self.limits, &frames.jacobian(), &joints, error, floor);
         }
         Attempt::Stalled(best)
-    }
-
-    /// A damped least-squares step that ends inside the joint limits.
-    fn projected_step(
-        &self,
-        jacobian: &Jacobian,
-        joints: &JointVector,
-        error: Vector6<f64>,
-        damping: f64,
-    ) -> JointVector {
-        let mut remaining = error;
-        let mut free = [true; JOINTS];
-        let mut next = *joints;
-        for _ in 0..3 {
-            let step = damped_step(jacobian, &free, &remaining, damping);
-            let scale = (STEP_CAP / step.amax()).min(1.0);
-            let mut blocked = false;
-            let ranges = self.limits.lower.iter().zip(self.limits.upper.iter());
-            for (index, ((open, change), (lower, upper))) in free.iter_mut().zip(step.iter()).zip(ranges).enumerate() {
-                if !*open {
-                    continue;
-                }
-                let wanted = joints[index] + change * scale;
-                next[index] = wanted.clamp(*lower, *upper);
-                if next[index] != wanted {
-                    *open = false;
-                    blocked = true;
-                    remaining -= jacobian.column(index) * (next[index] - joints[index]);
-                }
-            }
-            if !blocked {
-                break;
-            }
-        }
-        next
     }
 }
 

@@ -94,12 +94,10 @@ impl ArmModel {
     /// Says whether the pose is out of reach at all, or only from this posture.
     fn not_tracked(&self, line: &Line, share: f64, start: &JointVector) -> MotionRefusal {
         let pose = line.at(share);
-        match self.inverse(&pose, start) {
-            Err(error) => MotionRefusal::unreachable(self, &pose, &error),
-            Ok(_) => {
-                let place = Point::from(pose.translation.vector);
-                MotionRefusal::NotTracked { side: self.side(), place, share }
-            }
+        if let Err(error) = self.inverse(&pose, start) {
+            return MotionRefusal::unreachable(self, &pose, &error);
         }
+        let place = Point::from(pose.translation.vector);
+        MotionRefusal::NotTracked { side: self.side(), place, share }
     }
 }

@@ -207,7 +207,7 @@ fn arm_model(description: &Description, side: Side, tool: Tool) -> Result<(ArmMo
     let (_, last_axis) = arm.origins[JOINTS - 1];
     let unfolded = rotation_from_z(&last_axis).inverse();
     let hand_and_tip = (unfolded * arm.hand, unfolded * tip);
-    let chain = Chain::new(arm.origins, &tip);
+    let chain = Chain::new(&arm.origins, &tip);
     let seeds = Arc::new(SeedTable::new(&chain, &arm.limits));
     Ok((ArmModel { side, chain, limits: arm.limits, seeds, joint_names: arm.names }, hand_and_tip))
 }

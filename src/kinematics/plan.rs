@@ -16,6 +16,8 @@ use crate::body::{PerSide, Side};
 use crate::geometry::{Finite, Point, Pose};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
+/// Share of the limits that a plan uses: between the places where a path's slope is looked at it may be a little steeper.
+const HEADROOM: f64 = 0.95;
 /// How far outside its range (radians) a measured joint may be: encoder steps and the robot's own control error (0.5°).
 const START_TOLERANCE: f64 = 0.009;
 
@@ -208,6 +210,8 @@ fn path_limits(paths: &PerSide<JointPath>, extent: &PerSide<Extent>, limits: &Mo
             }
         }
     }
+    bounds.speed *= HEADROOM;
+    bounds.acceleration *= HEADROOM;
     bounds
 }
 

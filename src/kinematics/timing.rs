@@ -1,6 +1,7 @@
 //! When a motion is where on its path: the path's parameter over time, with bounded speed, acceleration and jerk.
 //!
 //! The profiles come from `rsruckig` (the Ruckig method, Berscheid and Kroeger 2021). Knows nothing of arms.
+#![expect(clippy::indexing_slicing, reason = "the generator has one degree of freedom, and its arrays one element")]
 
 use rsruckig::prelude::{ControlInterface, InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use thiserror::Error;

@@ -5,7 +5,6 @@
 
 use super::breach::{Limit, LimitBreach};
 use super::ports::{CommandError, Limb};
-use crate::body::Side;
 use crate::geometry::Point;
 use crate::kinematics::{ArmModel, JOINT_TOLERANCE, JointVector, MotionLimits};
 use crate::time::Stamp;
@@ -183,7 +182,11 @@ impl<L: Limb> GuardedLimb<L> {
         most: &JointVector,
         what: impl Fn(String) -> Limit,
     ) -> Result<(), LimitBreach> {
-        let beyond = values.iter().zip(most.iter()).enumerate().find(|(_, (value, most))| !(value.abs() <= **most));
+        let beyond = values
+            .iter()
+            .zip(most.iter())
+            .enumerate()
+            .find(|(_, (value, most))| value.is_nan() || value.abs() > **most);
         match beyond {
             None => Ok(()),
             Some((index, (value, most))) => {

@@ -82,7 +82,7 @@ fn an_axis_that_is_not_z_is_folded_into_the_chain() {
         let expected = joints.iter().fold(Pose::identity(), |pose, angle| {
             pose * Pose::translation(0.1, 0.02, 0.3) * UnitQuaternion::from_scaled_axis(axis * *angle)
         }) * tip;
-        let found = Chain::new(origins(axis), &tip).tip_pose(&joints);
+        let found = Chain::new(&origins(axis), &tip).tip_pose(&joints);
         assert!((found.translation.vector - expected.translation.vector).norm() < 1e-12);
         assert!(found.rotation.angle_to(&expected.rotation) < 1e-7);
     }

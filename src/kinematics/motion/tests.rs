@@ -109,7 +109,8 @@ fn velocity_and_acceleration_are_the_derivatives_of_the_joints() {
     let step = Duration::from_micros(500);
     for index in 1..40 {
         let time = MOTION.duration().mul_f64(f64::from(index) / 40.0);
-        let (before, here, after) = (MOTION.sample(time - step), MOTION.sample(time), MOTION.sample(time + step));
+        let (before, here, after) =
+            (MOTION.sample(time.checked_sub(step).unwrap()), MOTION.sample(time), MOTION.sample(time + step));
         for side in Side::BOTH {
             let velocity = (after.get(side).joints - before.get(side).joints) / (2.0 * step.as_secs_f64());
             assert!((velocity - here.get(side).velocity).amax() < 1e-4);
@@ -121,7 +122,7 @@ fn velocity_and_acceleration_are_the_derivatives_of_the_joints() {
 
 #[test]
 fn before_the_start_and_after_the_end_the_arms_rest() {
-    let end = MOTION.sample(MOTION.duration() + Duration::from_secs(60));
+    let end = MOTION.sample(MOTION.duration() + Duration::from_mins(1));
     for side in Side::BOTH {
         assert!(MOTION.sample(Duration::ZERO).get(side).velocity.amax() < 1e-9);
         assert!(end.get(side).velocity.amax() < 1e-6);

@@ -32,7 +32,7 @@ proptest! {
         for index in 1..knots.len() - 1 {
             let share = index as f64 / spans;
             let (before, after) = (path.at(share - 1e-9), path.at(share + 1e-9));
-            let scale = 1.0 + path.curvature.iter().map(|bend| bend.amax()).fold(0.0, f64::max);
+            let scale = 1.0 + path.curvature.iter().map(JointVector::amax).fold(0.0, f64::max);
             prop_assert!((after.slope - before.slope).amax() < 1e-6 * scale);
             prop_assert!((after.curvature - before.curvature).amax() < 1e-6 * scale);
         }

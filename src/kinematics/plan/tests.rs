@@ -158,7 +158,7 @@ proptest! {
     fn whatever_is_planned_keeps_every_limit(x in -0.2..0.2_f64, y in -0.2..0.2_f64, z in -0.3..0.1_f64) {
         let limits = MotionLimits::default();
         let Ok(motion) = step_right(Vector::new(x, y, z), &limits) else { return Ok(()) };
-        prop_assert!(motion.duration() >= limits.minimum_duration - std::time::Duration::from_micros(1));
+        prop_assert!(motion.duration() + std::time::Duration::from_micros(1) >= limits.minimum_duration);
         for index in 0..=200_u32 {
             let setpoints = motion.sample(motion.duration() * index / 200);
             for (side, setpoint) in setpoints.iter() {

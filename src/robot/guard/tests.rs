@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::Side;
 use crate::kinematics::RobotModel;
 use crate::robot::dummy::{DummyLimb, Told};
 use proptest::prelude::*;
