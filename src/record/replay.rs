@@ -4,6 +4,7 @@ use super::entry::{Header, Recipe, Step};
 use super::error::JournalError;
 use super::{Reading, read};
 use crate::kinematics::RobotModel;
+use crate::modelling::MovementSpace;
 use crate::supervisor::{Effect, Setup, Supervisor};
 use crate::time::Stamp;
 use serde::Serialize;
@@ -26,6 +27,7 @@ pub struct Difference {
 #[derive(Debug)]
 pub struct Replay {
     supervisor: Supervisor,
+    space: Option<MovementSpace>,
     gap: Option<u64>,
 }
 
@@ -37,8 +39,9 @@ impl Replay {
     pub fn new(header: &Header, change: impl FnOnce(Setup) -> Result<Setup, String>) -> Result<Self, String> {
         let setup = change(Recipe::of_header(header)?)?;
         let model = RobotModel::baxter().map_err(|error| error.to_string())?;
+        let space = setup.space.clone();
         let supervisor = Supervisor::new(setup, model).map_err(|error| error.to_string())?;
-        Ok(Self { supervisor, gap: None })
+        Ok(Self { supervisor, space, gap: None })
     }
 
     /// Feeds one step. Returns what is decided now and, where that is not what was recorded, the difference.
@@ -60,6 +63,12 @@ impl Replay {
     #[must_use]
     pub const fn first_gap(&self) -> Option<u64> {
         self.gap
+    }
+
+    /// The person's movement space, where the trial had one.
+    #[must_use]
+    pub const fn space(&self) -> Option<&MovementSpace> {
+        self.space.as_ref()
     }
 
     /// The core, for its snapshots.
