@@ -33,6 +33,7 @@ pub mod planning;
 pub mod record;
 pub mod report;
 pub mod robot;
+pub mod ros;
 pub mod safety;
 pub mod sensing;
 pub mod sequencing;

@@ -1,0 +1,27 @@
+//! The ROS 1 adapter: the only user of rosrust.
+//!
+//! It decodes the robot's messages into the core's inputs and sends the core's effects back, and guards against what the
+//! transport does badly (a master that hangs or restarts, publishers that go silent, callbacks that panic). It decides
+//! nothing, blocks no thread of the core and prints nothing.
+
+pub mod decode;
+mod encode;
+pub mod error;
+pub mod graph;
+pub mod link;
+pub mod master;
+pub mod message;
+pub mod monitor;
+pub mod node;
+pub mod simulation;
+mod subscription;
+mod watch;
+pub mod xmlrpc;
+
+pub use decode::DepthFrame;
+pub use error::RosError;
+pub use link::{Commander, LinkSettings, RobotLink, RosLimb, Showing, StopPublisher};
+pub use monitor::TopicReport;
+pub use node::{Node, leave};
+pub use simulation::SimNode;
+pub use subscription::Sink;

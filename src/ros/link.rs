@@ -1,0 +1,339 @@
+//! The link to a Baxter: its topics in, commands out.
+//!
+//! Nothing here decides what is sent. Sending never blocks; everything that waits for the network (registering, mending) is
+//! done at the start or by the watch. Dropping the link does not unregister from the calling thread's point of view: hand it
+//! to [`super::node::leave`], which gives it a second.
+
+mod services;
+mod show;
+
+pub use show::Showing;
+
+use super::decode::{self, AnyAssemblyState, DepthFrame, skeleton::Skeleton};
+use super::encode;
+use super::error::RosError;
+use super::message::{baxter_core_msgs, sensor_msgs, std_msgs, tf2_msgs};
+use super::monitor::{Monitor, TopicReport, now};
+use super::node::Node;
+use super::subscription::{Decoded, Sink, Subscription, TopicNeed};
+use super::watch::Watch;
+use crate::assembly::SwitchRequest;
+use crate::body::{PerSide, Side};
+use crate::kinematics::JointVector;
+use crate::robot::PortError;
+use crate::supervisor::Input;
+use rosrust::{Message, Publisher, Service};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Messages that may wait for their callback at 100 Hz: 80 ms, beyond which they are stale anyway.
+const QUEUE: usize = 8;
+/// The robot's beat and what is tolerated round it, in messages a second.
+const HUNDRED_HERTZ: (f64, f64) = (80.0, 125.0);
+/// Both publishers of joint states together: 100 Hz of the robot, and the grippers' own messages.
+const JOINT_HERTZ: (f64, f64) = (40.0, 400.0);
+/// A depth camera's beat.
+const THIRTY_HERTZ: (f64, f64) = (20.0, 35.0);
+/// Anything goes.
+const ANY_RATE: (f64, f64) = (0.0, f64::INFINITY);
+
+/// How the link is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LinkSettings {
+    /// True where everything is decided and nothing is commanded: no command topic is even advertised.
+    pub is_dry_run: bool,
+}
+
+/// What commands the robot: absent in a dry run.
+#[derive(Clone)]
+struct CommandTopics {
+    joints: PerSide<Publisher<baxter_core_msgs::JointCommand>>,
+    speed_ratio: PerSide<Publisher<std_msgs::Float64>>,
+    timeout: PerSide<Publisher<std_msgs::Float64>>,
+    stop: Publisher<std_msgs::Empty>,
+    reset: Publisher<std_msgs::Empty>,
+    enable: Publisher<std_msgs::Bool>,
+}
+
+/// The link. One a process.
+pub struct RobotLink {
+    node: Node,
+    commands: Option<CommandTopics>,
+    showing: Showing,
+    monitors: Vec<Monitor>,
+    depth: NewestDepth,
+    ended: Arc<AtomicBool>,
+    _services: Vec<Service>,
+}
+
+impl std::fmt::Debug for RobotLink {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("RobotLink").field("node", &self.node).finish_non_exhaustive()
+    }
+}
+
+impl RobotLink {
+    /// Subscribes to the robot, advertises what commands it, and starts the watch. Inputs go to `sink`, which must not block.
+    ///
+    /// # Errors
+    /// Where the master does not register something, or the system has no thread to give.
+    pub fn connect(node: &Node, settings: LinkSettings, sink: Sink) -> Result<Self, RosError> {
+        let commands = if settings.is_dry_run { None } else { Some(CommandTopics::advertise()?) };
+        let showing = Showing::advertise()?;
+        let depth = NewestDepth::default();
+        let subscriptions = subscribe(&sink, &depth)?;
+        let monitors = subscriptions.iter().map(|subscription| subscription.monitor.clone()).collect();
+        let services = services::serve(&sink)?;
+        let ended = Arc::new(AtomicBool::new(false));
+        Watch::new(node.master(), &node.name(), sink, subscriptions)
+            .start(Arc::clone(&ended))
+            .map_err(|error| RosError::thread("the watch over the ROS master", error))?;
+        Ok(Self { node: node.clone(), commands, showing, monitors, depth, ended, _services: services })
+    }
+
+    /// What the arms and the switch are commanded through, for the thread that carries effects out. `None` in a dry run.
+    #[must_use]
+    pub fn commander(&self) -> Option<Commander> {
+        self.commands.clone().map(Commander)
+    }
+
+    /// The stop's own way out, for the thread that does nothing else. `None` in a dry run.
+    #[must_use]
+    pub fn stop_publisher(&self) -> Option<StopPublisher> {
+        self.commands.as_ref().map(|commands| StopPublisher(commands.stop.clone()))
+    }
+
+    /// What shows the node's doings to other nodes.
+    #[must_use]
+    pub fn showing(&self) -> Showing {
+        self.showing.clone()
+    }
+
+    /// The newest depth image that nobody has taken yet. Older ones are gone.
+    #[must_use]
+    pub fn newest_depth(&self) -> Option<DepthFrame> {
+        self.depth.take()
+    }
+
+    /// How the subscribed topics do.
+    #[must_use]
+    pub fn topics(&self) -> Vec<TopicReport> {
+        let now = now();
+        self.monitors.iter().map(|monitor| monitor.report(now)).collect()
+    }
+
+    /// Publishes the topics' health on `/diagnostics`; once a second is usual.
+    pub fn publish_diagnostics(&self) {
+        self.showing.diagnose(&encode::diagnostics(now(), &self.node.name(), &self.topics()));
+    }
+}
+
+impl Drop for RobotLink {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::SeqCst);
+    }
+}
+
+/// Commands arms and switch. Sending never blocks.
+#[derive(Clone)]
+pub struct Commander(CommandTopics);
+
+impl std::fmt::Debug for Commander {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Commander")
+    }
+}
+
+impl Commander {
+    /// Sends joint positions (radians, s0 to w2) to an arm. To be repeated at 100 Hz: after 0.2 s without, the arm holds.
+    ///
+    /// # Errors
+    /// Where the transport does not take it.
+    pub fn joints(&self, side: Side, joints: &JointVector) -> Result<(), PortError> {
+        send(self.0.joints.get(side), encode::joint_command(side, joints), "joint_command")
+    }
+
+    /// Asks something of the robot's switch, once. Whether it happened, `/robot/state` tells.
+    ///
+    /// # Errors
+    /// Where the transport does not take it.
+    pub fn switch(&self, request: SwitchRequest) -> Result<(), PortError> {
+        match request {
+            SwitchRequest::Stop => send(&self.0.stop, std_msgs::Empty {}, "set_super_stop"),
+            SwitchRequest::Reset => send(&self.0.reset, std_msgs::Empty {}, "set_super_reset"),
+            SwitchRequest::Enable => send(&self.0.enable, std_msgs::Bool { data: true }, "set_super_enable"),
+            SwitchRequest::Disable => send(&self.0.enable, std_msgs::Bool { data: false }, "set_super_enable"),
+        }
+    }
+
+    /// Sets the share of an arm's top speed, from 0 to 1 (the robot's own default is 0.3). Latched.
+    ///
+    /// # Errors
+    /// Where the transport does not take it.
+    pub fn speed_ratio(&self, side: Side, share: f64) -> Result<(), PortError> {
+        send(self.0.speed_ratio.get(side), std_msgs::Float64 { data: share }, "set_speed_ratio")
+    }
+
+    /// Sets for how long a command holds, in seconds (the robot's own default is 0.2). Latched.
+    ///
+    /// # Errors
+    /// Where the transport does not take it.
+    pub fn command_timeout(&self, side: Side, seconds: f64) -> Result<(), PortError> {
+        send(self.0.timeout.get(side), std_msgs::Float64 { data: seconds }, "joint_command_timeout")
+    }
+}
+
+/// One arm as a port.
+#[derive(Clone, Debug)]
+pub struct RosLimb {
+    /// Through which it is commanded.
+    pub commander: Commander,
+    /// Which arm.
+    pub side: Side,
+}
+
+impl crate::robot::Limb for RosLimb {
+    fn command(&mut self, _now: crate::time::Stamp, joints: &JointVector) -> Result<(), crate::robot::CommandError> {
+        Ok(self.commander.joints(self.side, joints)?)
+    }
+
+    /// Sends nothing more: the arm holds by the robot's own time-out.
+    fn hold(&mut self, _now: crate::time::Stamp) {}
+}
+
+impl crate::robot::RobotSwitch for Commander {
+    fn request(&mut self, _now: crate::time::Stamp, request: SwitchRequest) -> Result<(), PortError> {
+        self.switch(request)
+    }
+}
+
+/// Sends the software stop, and nothing else. Its handle is made at the start, so that a stop waits for nothing.
+#[derive(Clone)]
+pub struct StopPublisher(Publisher<std_msgs::Empty>);
+
+impl std::fmt::Debug for StopPublisher {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("StopPublisher")
+    }
+}
+
+impl StopPublisher {
+    /// Sends one stop. To be repeated until the robot's state confirms it.
+    pub fn send(&self) {
+        // A stop that the transport does not take is repeated by its thread; there is no other way to send it.
+        let _ = self.0.send(std_msgs::Empty {});
+    }
+
+    /// How many listen: where nobody does, a stop by software reaches nobody.
+    #[must_use]
+    pub fn listeners(&self) -> usize {
+        self.0.subscriber_count()
+    }
+}
+
+impl CommandTopics {
+    fn advertise() -> Result<Self, RosError> {
+        let mut speed_ratio = both("set_speed_ratio")?;
+        let mut timeout = both("joint_command_timeout")?;
+        for side in Side::BOTH {
+            let latched: [&mut Publisher<std_msgs::Float64>; 2] = [speed_ratio.get_mut(side), timeout.get_mut(side)];
+            latched.into_iter().for_each(|publisher| publisher.set_latching(true));
+        }
+        Ok(Self {
+            joints: both("joint_command")?,
+            speed_ratio,
+            timeout,
+            stop: advertise("/robot/set_super_stop", 1)?,
+            reset: advertise("/robot/set_super_reset", 1)?,
+            enable: advertise("/robot/set_super_enable", 1)?,
+        })
+    }
+}
+
+fn both<T: Message>(word: &str) -> Result<PerSide<Publisher<T>>, RosError> {
+    let topic = |side: Side| advertise(&format!("/robot/limb/{side}/{word}"), 1);
+    Ok(PerSide { left: topic(Side::Left)?, right: topic(Side::Right)? })
+}
+
+pub(super) fn advertise<T: Message>(topic: &str, queue: usize) -> Result<Publisher<T>, RosError> {
+    rosrust::publish(topic, queue).map_err(|error| RosError::registration(topic, error))
+}
+
+fn send<T: Message>(publisher: &Publisher<T>, message: T, what: &str) -> Result<(), PortError> {
+    publisher.send(message).map_err(|error| PortError { what: what.to_owned(), reason: error.to_string() })
+}
+
+/// The newest depth image, and the camera's figures that go with it.
+#[derive(Clone, Debug, Default)]
+struct NewestDepth {
+    frame: Arc<Mutex<Option<DepthFrame>>>,
+    matrix: Arc<Mutex<Option<[f64; 9]>>>,
+}
+
+impl NewestDepth {
+    fn put(&self, mut frame: DepthFrame) {
+        frame.camera_matrix = *self.matrix.lock().unwrap_or_else(PoisonError::into_inner);
+        *self.frame.lock().unwrap_or_else(PoisonError::into_inner) = Some(frame);
+    }
+
+    fn take(&self) -> Option<DepthFrame> {
+        self.frame.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn calibrate(&self, matrix: [f64; 9]) {
+        *self.matrix.lock().unwrap_or_else(PoisonError::into_inner) = Some(matrix);
+    }
+}
+
+fn need(topic: &'static str, queue: usize, expected_hertz: (f64, f64), required: bool) -> TopicNeed {
+    TopicNeed { topic, queue, expected_hertz, required }
+}
+
+fn subscribe(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosError> {
+    let mut all = Vec::new();
+    for (side, endpoint, collision) in [
+        (Side::Left, "/robot/limb/left/endpoint_state", "/robot/limb/left/collision_detection_state"),
+        (Side::Right, "/robot/limb/right/endpoint_state", "/robot/limb/right/collision_detection_state"),
+    ] {
+        let decode = move |message| Decoded::Input(Input::Endpoint(decode::endpoint(side, &message)));
+        all.push(Subscription::new::<baxter_core_msgs::EndpointState>(need(endpoint, QUEUE, HUNDRED_HERTZ, true), sink, decode)?);
+        let decode = move |message: baxter_core_msgs::CollisionDetectionState| {
+            Decoded::Input(Input::Collision { side, active: message.collision_state })
+        };
+        all.push(Subscription::new(need(collision, QUEUE, ANY_RATE, false), sink, decode)?);
+    }
+    let decode = |message: sensor_msgs::JointState| decode::joints(&message).map_or(Decoded::Kept, |sample| Decoded::Input(Input::Joints(sample)));
+    all.push(Subscription::new(need("/robot/joint_states", QUEUE, JOINT_HERTZ, true), sink, decode)?);
+    let decode = |message: AnyAssemblyState| {
+        decode::robot_state(&message, now()).map_or(Decoded::Unusable, |state| Decoded::Input(Input::Robot(state)))
+    };
+    all.push(Subscription::new(need("/robot/state", QUEUE, (5.0, 125.0), true), sink, decode)?);
+    all.extend(subscribe_camera(sink, depth)?);
+    Ok(all)
+}
+
+fn subscribe_camera(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosError> {
+    let newest = depth.clone();
+    let image = move |message: sensor_msgs::Image| match decode::depth(message) {
+        Some(frame) => {
+            newest.put(frame);
+            Decoded::Kept
+        }
+        None => Decoded::Unusable,
+    };
+    let newest = depth.clone();
+    let information = move |message: sensor_msgs::CameraInfo| {
+        newest.calibrate(message.K);
+        Decoded::Kept
+    };
+    let skeletons = Mutex::new(Skeleton::default());
+    let transforms = move |message: tf2_msgs::TFMessage| {
+        let pose = skeletons.lock().unwrap_or_else(PoisonError::into_inner).take(&message.transforms);
+        pose.map_or(Decoded::Kept, |pose| Decoded::Input(Input::Body(pose)))
+    };
+    Ok(vec![
+        Subscription::new(need("/camera/depth/image_raw", 1, THIRTY_HERTZ, false), sink, image)?,
+        Subscription::new(need("/camera/depth/camera_info", 1, THIRTY_HERTZ, false), sink, information)?,
+        Subscription::new(need("/tf", 64, ANY_RATE, false), sink, transforms)?,
+    ])
+}

@@ -1,0 +1,70 @@
+//! What other nodes may see of this one: `~state`, `~force/{s}`, `~path/{s}`, `~markers`, `/diagnostics`.
+
+use super::{RosError, advertise};
+use crate::body::{PerSide, Side};
+use crate::ros::encode;
+use crate::ros::message::{diagnostic_msgs, nav_msgs, valet_msgs, visualization_msgs};
+use crate::snapshot::Snapshot;
+use crate::time::Stamp;
+use rosrust::{Message, Publisher};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Snapshots come as often as a screen draws; other nodes get ten a second.
+const PERIOD: Duration = Duration::from_millis(100);
+
+/// Shows snapshots to other nodes. Sending never blocks.
+#[derive(Clone)]
+pub struct Showing {
+    state: Publisher<valet_msgs::State>,
+    force: PerSide<Publisher<valet_msgs::Force>>,
+    path: PerSide<Publisher<nav_msgs::Path>>,
+    markers: Publisher<visualization_msgs::MarkerArray>,
+    diagnostics: Publisher<diagnostic_msgs::DiagnosticArray>,
+    last: Arc<Mutex<Option<Stamp>>>,
+}
+
+impl std::fmt::Debug for Showing {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Showing")
+    }
+}
+
+impl Showing {
+    pub(super) fn advertise() -> Result<Self, RosError> {
+        Ok(Self {
+            state: advertise("~state", 1)?,
+            force: both("~force")?,
+            path: both("~path")?,
+            markers: advertise("~markers", 1)?,
+            diagnostics: advertise("/diagnostics", 1)?,
+            last: Arc::new(Mutex::new(None)),
+        })
+    }
+
+    /// Publishes a snapshot, unless the last one was published less than a tenth of a second before.
+    pub fn show(&self, snapshot: &Snapshot) {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.is_some_and(|last| snapshot.now.checked_since(last).is_some_and(|span| span < PERIOD)) {
+            return;
+        }
+        *last = Some(snapshot.now);
+        drop(last);
+        // What cannot be shown is not missed by the trial: the next one comes in a tenth of a second.
+        let _ = self.state.send(encode::state(snapshot));
+        for (side, view) in snapshot.sides.iter() {
+            let _ = self.force.get(side).send(encode::force(snapshot, side, view));
+            let _ = self.path.get(side).send(encode::path(snapshot.now, &view.path.updated));
+        }
+        let _ = self.markers.send(encode::markers::all(snapshot));
+    }
+
+    pub(super) fn diagnose(&self, message: &diagnostic_msgs::DiagnosticArray) {
+        let _ = self.diagnostics.send(message.clone());
+    }
+}
+
+fn both<T: Message>(word: &str) -> Result<PerSide<Publisher<T>>, RosError> {
+    let topic = |side: Side| advertise(&format!("{word}/{side}"), 1);
+    Ok(PerSide { left: topic(Side::Left)?, right: topic(Side::Right)? })
+}

@@ -1,0 +1,135 @@
+//! How a subscribed topic does: shared between its callback, the watch and whoever shows it.
+//!
+//! Judges nothing: the core's watchdogs decide what a silence means. This is for the check-list, for diagnostics, and for
+//! the watch, which subscribes anew where a live publisher has gone silent.
+
+use crate::sensing::{Freshness, FreshnessSettings};
+use crate::time::Stamp;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// The time of day, as the engine and message headers count it.
+#[must_use]
+pub fn now() -> Stamp {
+    Stamp::ZERO + SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
+}
+
+/// What a topic's messages did lately.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TopicReport {
+    /// The topic as it was asked for, before remappings.
+    pub topic: String,
+    /// Its type.
+    pub kind: String,
+    /// Seconds since the newest message arrived; `None` where none did.
+    pub age_seconds: Option<f64>,
+    /// Messages a second now.
+    pub hertz: f64,
+    /// Least and most messages a second that are expected.
+    pub expected_hertz: (f64, f64),
+    /// Messages that could not be used.
+    pub unusable: u64,
+    /// Nodes that publish it, as the master knows them.
+    pub publishers: Vec<String>,
+    /// True where a trial cannot go on without it.
+    pub required: bool,
+}
+
+impl TopicReport {
+    /// True where messages come as they should.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        let (least, most) = self.expected_hertz;
+        self.age_seconds.is_some_and(|age| age < 0.5) && (least..=most).contains(&self.hertz)
+    }
+}
+
+#[derive(Debug)]
+struct State {
+    freshness: Freshness,
+    unusable: u64,
+    publishers: Vec<String>,
+}
+
+/// One topic's monitor. Cheap to clone.
+#[derive(Clone, Debug)]
+pub(super) struct Monitor {
+    pub(super) topic: String,
+    kind: String,
+    required: bool,
+    expected_hertz: (f64, f64),
+    state: Arc<Mutex<State>>,
+}
+
+impl Monitor {
+    pub(super) fn new(topic: &str, kind: String, expected_hertz: (f64, f64), required: bool) -> Self {
+        let (least, most) = expected_hertz;
+        let settings = FreshnessSettings::new(least, most, Duration::from_millis(500));
+        let state = State { freshness: Freshness::new(settings), unusable: 0, publishers: Vec::new() };
+        Self { topic: topic.to_owned(), kind, required, expected_hertz, state: Arc::new(Mutex::new(state)) }
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> T {
+        act(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// A message arrived.
+    pub(super) fn observe(&self, arrival: Stamp) {
+        self.with(|state| state.freshness.observe(arrival, None));
+    }
+
+    /// A message could not be used.
+    pub(super) fn unusable(&self) {
+        self.with(|state| state.unusable += 1);
+    }
+
+    pub(super) fn set_publishers(&self, publishers: Vec<String>) {
+        self.with(|state| state.publishers = publishers);
+    }
+
+    /// True where somebody publishes and nothing has come for `span`.
+    pub(super) fn is_silent(&self, now: Stamp, span: Duration) -> bool {
+        self.with(|state| !state.publishers.is_empty() && state.freshness.age(now).is_none_or(|age| age > span))
+    }
+
+    pub(super) fn report(&self, now: Stamp) -> TopicReport {
+        self.with(|state| TopicReport {
+            topic: self.topic.clone(),
+            kind: self.kind.clone(),
+            age_seconds: state.freshness.age(now).map(|age| age.as_secs_f64()),
+            hertz: state.freshness.rate(now),
+            expected_hertz: self.expected_hertz,
+            unusable: state.unusable,
+            publishers: state.publishers.clone(),
+            required: self.required,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn silence_counts_only_where_somebody_publishes() {
+        let monitor = Monitor::new("/robot/state", "type".into(), (80.0, 120.0), true);
+        let at = |milliseconds: u64| Stamp::from_nanoseconds(milliseconds * 1_000_000);
+        assert!(!monitor.is_silent(at(5_000), Duration::from_secs(2)));
+        monitor.set_publishers(vec!["/robot".into()]);
+        assert!(monitor.is_silent(at(5_000), Duration::from_secs(2)), "published and never heard");
+        monitor.observe(at(5_000));
+        assert!(!monitor.is_silent(at(6_000), Duration::from_secs(2)));
+        assert!(monitor.is_silent(at(7_001), Duration::from_secs(2)));
+    }
+
+    #[test]
+    fn a_report_tells_age_and_rate() {
+        let monitor = Monitor::new("/robot/state", "type".into(), (80.0, 120.0), true);
+        (0..100_u64).for_each(|index| monitor.observe(Stamp::from_nanoseconds(index * 10_000_000)));
+        monitor.unusable();
+        let report = monitor.report(Stamp::from_nanoseconds(1_000_000_000));
+        assert!((report.hertz - 100.0).abs() < 2.0 && report.is_good(), "{report:?}");
+        assert_eq!((report.age_seconds, report.unusable), (Some(0.01), 1));
+        assert!(!monitor.report(Stamp::from_nanoseconds(3_000_000_000)).is_good());
+    }
+}

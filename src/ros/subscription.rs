@@ -1,0 +1,114 @@
+//! A subscription that outlives what goes wrong in it.
+//!
+//! rosrust kills a callback for ever when it panics, and never reconnects a link that broke while its publisher lived: so
+//! each callback is caught, and the watch may make the subscription anew.
+
+use super::error::RosError;
+use super::monitor::{Monitor, now};
+use crate::supervisor::{Input, LinkEvent};
+use rosrust::{Message, Subscriber};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+/// Where inputs go. Must not block: it is called from the transport's threads.
+pub type Sink = Arc<dyn Fn(Input) + Send + Sync>;
+
+/// What a decoder made of a message.
+pub(super) enum Decoded {
+    /// An input for the core.
+    Input(Input),
+    /// Taken in, nothing to tell.
+    Kept,
+    /// Not to be understood.
+    Unusable,
+}
+
+/// What is asked of a topic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TopicNeed {
+    pub(super) topic: &'static str,
+    /// Messages that may wait for the callback; the oldest go first.
+    pub(super) queue: usize,
+    /// Least and most messages a second.
+    pub(super) expected_hertz: (f64, f64),
+    pub(super) required: bool,
+}
+
+type Make = Box<dyn Fn() -> Result<Subscriber, RosError> + Send>;
+
+/// A topic that is listened to.
+pub(super) struct Subscription {
+    pub(super) monitor: Monitor,
+    make: Make,
+    current: Option<Subscriber>,
+}
+
+impl Subscription {
+    /// Listens to a topic.
+    ///
+    /// # Errors
+    /// Where the master does not register it.
+    pub(super) fn new<T: Message>(
+        need: TopicNeed,
+        sink: &Sink,
+        decode: impl Fn(T) -> Decoded + Send + Sync + 'static,
+    ) -> Result<Self, RosError> {
+        let monitor = Monitor::new(need.topic, T::msg_type(), need.expected_hertz, need.required);
+        let (decode, sink, watched) = (Arc::new(decode), Arc::clone(sink), monitor.clone());
+        let make: Make = Box::new(move || {
+            let (decode, sink, monitor) = (Arc::clone(&decode), Arc::clone(&sink), watched.clone());
+            let callback = move |message: T| receive(message, decode.as_ref(), &sink, &monitor);
+            rosrust::subscribe(need.topic, need.queue, callback).map_err(|error| RosError::registration(need.topic, error))
+        });
+        let current = Some(make()?);
+        Ok(Self { monitor, make, current })
+    }
+
+    /// Gives the old subscription up and makes a new one.
+    pub(super) fn renew(&mut self) -> Result<(), RosError> {
+        self.current = None;
+        self.current = Some((self.make)()?);
+        Ok(())
+    }
+}
+
+fn receive<T>(message: T, decode: &(impl Fn(T) -> Decoded + ?Sized), sink: &Sink, monitor: &Monitor) {
+    monitor.observe(now());
+    match catch_unwind(AssertUnwindSafe(|| decode(message))) {
+        Ok(Decoded::Input(input)) => sink(input),
+        Ok(Decoded::Kept) => {}
+        Ok(Decoded::Unusable) => monitor.unusable(),
+        Err(_) => sink(Input::Link(LinkEvent::WorkerLost { name: format!("the reader of {}", monitor.topic) })),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    fn collecting() -> (Sink, Arc<Mutex<Vec<Input>>>) {
+        let inputs = Arc::new(Mutex::new(Vec::new()));
+        let kept = Arc::clone(&inputs);
+        (Arc::new(move |input| kept.lock().unwrap().push(input)), inputs)
+    }
+
+    #[test]
+    fn a_decoder_that_panics_is_told_and_the_next_message_is_read() {
+        let (sink, inputs) = collecting();
+        let monitor = Monitor::new("/topic", "type".into(), (1.0, 2.0), true);
+        let decode = |number: u32| if number == 0 { panic!("broken") } else { Decoded::Input(Input::Tick) };
+        receive(0, &decode, &sink, &monitor);
+        receive(1, &decode, &sink, &monitor);
+        let lost = Input::Link(LinkEvent::WorkerLost { name: "the reader of /topic".into() });
+        assert_eq!(*inputs.lock().unwrap(), [lost, Input::Tick]);
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_counted() {
+        let (sink, inputs) = collecting();
+        let monitor = Monitor::new("/topic", "type".into(), (1.0, 2.0), true);
+        receive((), &|()| Decoded::Unusable, &sink, &monitor);
+        assert_eq!((monitor.report(now()).unusable, inputs.lock().unwrap().len()), (1, 0));
+    }
+}

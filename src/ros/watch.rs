@@ -1,0 +1,176 @@
+//! The watch: looks at the master once a second, and mends what the transport does not.
+//!
+//! - The master gone or back is told. A master that came back knows nothing of this node: everything is registered again,
+//!   and our own subscribers are told the publishers, without touching streams that still run.
+//! - A publisher that lives but has gone silent is subscribed to anew: a broken link is never taken up again by itself.
+//! - A foreign publisher on a topic that commands the robot is named.
+//!
+//! All of this waits for the network, so it has a thread of its own, away from screen, stop and supervisor.
+
+use super::graph::{Graph, topic_types};
+use super::node::MASTER_LIMIT;
+use super::monitor::now;
+use super::subscription::{Sink, Subscription};
+use super::xmlrpc::Value;
+use super::xmlrpc::http::{CallError, call_ros};
+use crate::supervisor::{Input, LinkEvent};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How often the master is looked at.
+const PERIOD: Duration = Duration::from_secs(1);
+/// How often the watch looks whether it is to end.
+const NAP: Duration = Duration::from_millis(50);
+/// A published topic that is silent for so long is subscribed to anew.
+const SILENCE: Duration = Duration::from_secs(2);
+/// Not more often than this, so that a publisher that has nothing to say is not pestered.
+const RENEWAL: Duration = Duration::from_secs(5);
+/// The robot's own nodes that may enable it (two loaders run on every Baxter).
+const ROBOTS_OWN: [&str; 2] = ["/rcloader_left", "/rcloader_right"];
+
+/// What this node has with the master, as the master itself once said.
+#[derive(Debug, Default)]
+struct Registrations {
+    published: BTreeSet<String>,
+    subscribed: BTreeSet<String>,
+    services: BTreeMap<String, String>,
+    types: BTreeMap<String, String>,
+}
+
+pub(super) struct Watch {
+    master: String,
+    node: String,
+    uri: String,
+    sink: Sink,
+    subscriptions: Vec<(Subscription, Instant)>,
+    registrations: Registrations,
+    is_lost: bool,
+    foreign: BTreeSet<(String, String)>,
+}
+
+impl Watch {
+    pub(super) fn new(master: &str, node: &str, sink: Sink, subscriptions: Vec<Subscription>) -> Self {
+        let begin = Instant::now();
+        Self {
+            master: master.to_owned(),
+            node: node.to_owned(),
+            uri: rosrust::uri(),
+            sink,
+            subscriptions: subscriptions.into_iter().map(|subscription| (subscription, begin)).collect(),
+            registrations: Registrations::default(),
+            is_lost: false,
+            foreign: BTreeSet::new(),
+        }
+    }
+
+    /// Starts the thread; it ends soon after `ended` is set, and gives its subscriptions up.
+    pub(super) fn start(mut self, ended: Arc<AtomicBool>) -> std::io::Result<thread::JoinHandle<()>> {
+        thread::Builder::new().name("ros-watch".into()).spawn(move || {
+            while !ended.load(Ordering::SeqCst) {
+                self.look();
+                let next = Instant::now() + PERIOD;
+                while Instant::now() < next && !ended.load(Ordering::SeqCst) {
+                    thread::sleep(NAP);
+                }
+            }
+        })
+    }
+
+    fn tell(&self, event: LinkEvent) {
+        (self.sink)(Input::Link(event));
+    }
+
+    fn look(&mut self) {
+        match Graph::ask(&self.master, &self.node) {
+            Err(_) if self.is_lost => {}
+            Err(_) => {
+                self.is_lost = true;
+                self.tell(LinkEvent::MasterLost);
+            }
+            Ok(graph) => {
+                // A node that another one of its name has pushed out must not push back.
+                let mended = if rosrust::is_ok() { self.mend(&graph) } else { Ok(()) };
+                if mended.is_ok() && std::mem::take(&mut self.is_lost) {
+                    self.tell(LinkEvent::MasterBack);
+                }
+                self.name_foreign(&graph);
+                self.renew_silent(&graph);
+            }
+        }
+    }
+
+    /// Registers again what the master does not know any more, and learns what it knows.
+    fn mend(&mut self, graph: &Graph) -> Result<(), CallError> {
+        let caller = Value::text(&self.node);
+        let mine = |nodes: &[String]| nodes.contains(&self.node);
+        for topic in self.registrations.published.iter().filter(|topic| !mine(graph.publishers_of(topic))) {
+            let kind = self.kind_of(topic);
+            call_ros(&self.master, "registerPublisher", &[caller.clone(), Value::text(topic), kind, Value::text(&self.uri)], MASTER_LIMIT)?;
+        }
+        for topic in self.registrations.subscribed.iter().filter(|topic| !mine(graph.subscribers_of(topic))) {
+            let kind = self.kind_of(topic);
+            let parameters = [caller.clone(), Value::text(topic), kind, Value::text(&self.uri)];
+            let publishers = call_ros(&self.master, "registerSubscriber", &parameters, MASTER_LIMIT)?;
+            call_ros(&self.uri, "publisherUpdate", &[Value::text("/master"), Value::text(topic), publishers], MASTER_LIMIT)?;
+        }
+        for (service, address) in &self.registrations.services {
+            if !graph.services.get(service).is_some_and(|nodes| mine(nodes)) {
+                let parameters = [caller.clone(), Value::text(service), Value::text(address), Value::text(&self.uri)];
+                call_ros(&self.master, "registerService", &parameters, MASTER_LIMIT)?;
+            }
+        }
+        self.learn(graph)
+    }
+
+    fn kind_of(&self, topic: &str) -> Value {
+        Value::text(self.registrations.types.get(topic).map_or("*", String::as_str))
+    }
+
+    fn learn(&mut self, graph: &Graph) -> Result<(), CallError> {
+        let mine = |(_, nodes): &(&String, &Vec<String>)| nodes.contains(&self.node);
+        let known = &mut self.registrations;
+        let before = known.published.len() + known.subscribed.len();
+        known.published.extend(graph.publishers.iter().filter(mine).map(|(topic, _)| topic.clone()));
+        known.subscribed.extend(graph.subscribers.iter().filter(mine).map(|(topic, _)| topic.clone()));
+        if known.published.len() + known.subscribed.len() > before {
+            known.types.extend(topic_types(&self.master, &self.node)?);
+        }
+        for (service, _) in graph.services.iter().filter(mine) {
+            if !known.services.contains_key(service) {
+                let parameters = [Value::text(&self.node), Value::text(service)];
+                if let Some(address) = call_ros(&self.master, "lookupService", &parameters, MASTER_LIMIT)?.as_text() {
+                    known.services.insert(service.clone(), address.to_owned());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Names nodes that command the robot beside this one, each once as long as it stays.
+    fn name_foreign(&mut self, graph: &Graph) {
+        let commands = self.registrations.published.iter().filter(|topic| topic.starts_with("/robot/"));
+        let found: BTreeSet<_> = commands
+            .flat_map(|topic| graph.publishers_of(topic).iter().map(move |node| (topic.clone(), node.clone())))
+            .filter(|(_, node)| *node != self.node && !ROBOTS_OWN.contains(&node.as_str()))
+            .collect();
+        for (topic, node) in found.difference(&self.foreign) {
+            self.tell(LinkEvent::ForeignPublisher { topic: topic.clone(), node: node.clone() });
+        }
+        self.foreign = found;
+    }
+
+    fn renew_silent(&mut self, graph: &Graph) {
+        for (subscription, renewed) in &mut self.subscriptions {
+            let monitor = &subscription.monitor;
+            monitor.set_publishers(graph.publishers_of(&monitor.topic).to_vec());
+            if monitor.is_silent(now(), SILENCE) && renewed.elapsed() > RENEWAL {
+                // Where it fails, the topic stays silent, is shown as such, and is tried again.
+                let _ = subscription.renew();
+                *renewed = Instant::now();
+            }
+        }
+    }
+}
