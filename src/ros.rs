@@ -6,6 +6,7 @@
 
 pub mod decode;
 mod encode;
+pub mod environment;
 pub mod error;
 pub mod graph;
 pub mod link;

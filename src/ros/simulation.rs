@@ -335,16 +335,13 @@ mod tests {
         let mut reversed = whole.clone();
         reversed.names.reverse();
         assert!(commanded(Side::Left, &reversed).is_some());
-        for spoil in [
-            |message: &mut baxter_core_msgs::JointCommand| message.mode = 4,
-            |message| message.command[3] = f64::NAN,
-            |message| drop(message.names.pop()),
-            |message| message.command.clear(),
-        ] {
-            let mut message = whole.clone();
-            spoil(&mut message);
-            assert_eq!(commanded(Side::Left, &message), None);
-        }
+        let spoiled = [
+            baxter_core_msgs::JointCommand { mode: 4, ..whole.clone() },
+            baxter_core_msgs::JointCommand { command: vec![f64::NAN; 7], ..whole.clone() },
+            baxter_core_msgs::JointCommand { names: whole.names[..6].to_vec(), ..whole.clone() },
+            baxter_core_msgs::JointCommand { command: Vec::new(), ..whole },
+        ];
+        assert!(spoiled.iter().all(|message| commanded(Side::Left, message).is_none()));
     }
 
     #[test]
