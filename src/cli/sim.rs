@@ -84,7 +84,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let node = Node::start("simulated_baxter").map_err(ros_failure)?;
     let relay = master.as_ref().map(|_| relay_log()).transpose().map_err(ros_failure)?;
     let mut robot = SimNode::new(&node, Box::new(WorldOnTheWire(world))).map_err(ros_failure)?;
-    let words = format!("simulated Baxter {} with seed {} on the master at {}", node.name(), arguments.seed, node.master());
+    let words =
+        format!("simulated Baxter {} with seed {} on the master at {}", node.name(), arguments.seed, node.master());
     Output::new(false).line(&words)?;
     node.log(Level::Information, &words);
     robot.run(|| node.is_running() && !ended.load(Ordering::SeqCst));

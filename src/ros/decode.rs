@@ -52,7 +52,9 @@ impl rosrust::Message for AnyAssemblyState {
 #[must_use]
 pub fn robot_state(message: &AnyAssemblyState, arrival: Stamp) -> Option<RobotState> {
     let (ready, rest) = match *message.0.as_slice() {
-        [ready, enabled, stopped, error, button, source] => (Some(ready != 0), [enabled, stopped, error, button, source]),
+        [ready, enabled, stopped, error, button, source] => {
+            (Some(ready != 0), [enabled, stopped, error, button, source])
+        }
         [enabled, stopped, error, button, source] => (None, [enabled, stopped, error, button, source]),
         _ => return None,
     };
@@ -76,7 +78,10 @@ pub fn endpoint(side: Side, message: &baxter_core_msgs::EndpointState) -> Endpoi
         side,
         stamp: stamp(message.header.stamp),
         pose: pose(&message.pose),
-        wrench: Wrench { force: Vector::new(force.x, force.y, force.z), torque: Vector::new(torque.x, torque.y, torque.z) },
+        wrench: Wrench {
+            force: Vector::new(force.x, force.y, force.z),
+            torque: Vector::new(torque.x, torque.y, torque.z),
+        },
     }
 }
 
@@ -132,7 +137,10 @@ pub fn depth(message: sensor_msgs::Image) -> Option<DepthFrame> {
         "32FC1" => 4,
         _ => return None,
     };
-    let fits = width > 0 && height > 0 && step >= width.checked_mul(bytes)? && message.data.len() == step.checked_mul(height)?;
+    let fits = width > 0
+        && height > 0
+        && step >= width.checked_mul(bytes)?
+        && message.data.len() == step.checked_mul(height)?;
     fits.then(|| DepthFrame {
         stamp: stamp(message.header.stamp),
         frame: message.header.frame_id,

@@ -3,7 +3,9 @@
 pub(super) mod markers;
 
 use super::decode::JOINTS;
-use super::message::{baxter_core_msgs, diagnostic_msgs, geometry_msgs, nav_msgs, sensor_msgs, std_msgs, tf2_msgs, valet_msgs};
+use super::message::{
+    baxter_core_msgs, diagnostic_msgs, geometry_msgs, nav_msgs, sensor_msgs, std_msgs, tf2_msgs, valet_msgs,
+};
 use super::monitor::TopicReport;
 use crate::assembly::RobotState;
 use crate::body::{BodyPose, Joint, Side};
@@ -70,7 +72,12 @@ pub(super) fn state(snapshot: &Snapshot) -> valet_msgs::State {
         header: header(snapshot.now, BASE),
         strategy: trial.strategy.map(|strategy| strategy.to_string()).unwrap_or_default(),
         phase: trial.phase.words().to_owned(),
-        step: trial.step.iter().map(|(side, step)| format!("{side} {}", step.unwrap_or(0))).collect::<Vec<_>>().join(", "),
+        step: trial
+            .step
+            .iter()
+            .map(|(side, step)| format!("{side} {}", step.unwrap_or(0)))
+            .collect::<Vec<_>>()
+            .join(", "),
         safety: if snapshot.stop.latched { "stopped" } else { "clear" }.to_owned(),
         cause: cause.into_iter().find(|words| !words.is_empty()).cloned().unwrap_or_default(),
         armed: snapshot.robot.fresh(snapshot.now).is_some_and(|robot| robot.enabled && !robot.stopped),
@@ -135,10 +142,14 @@ pub(super) fn endpoint(sample: &EndpointSample) -> baxter_core_msgs::EndpointSta
 pub(super) fn joints(sample: &JointSample) -> sensor_msgs::JointState {
     let arms = Side::BOTH.into_iter().flat_map(|side| {
         let positions = sample.positions.get(side);
-        JOINTS.iter().zip(positions).filter_map(move |(joint, position)| Some((format!("{side}_{joint}"), (*position)?)))
+        JOINTS
+            .iter()
+            .zip(positions)
+            .filter_map(move |(joint, position)| Some((format!("{side}_{joint}"), (*position)?)))
     });
-    let mut all: Vec<(String, f64)> =
-        arms.chain([("head_nod".to_owned(), 0.0), ("head_pan".to_owned(), 0.0), ("torso_t0".to_owned(), TORSO)]).collect();
+    let mut all: Vec<(String, f64)> = arms
+        .chain([("head_nod".to_owned(), 0.0), ("head_pan".to_owned(), 0.0), ("torso_t0".to_owned(), TORSO)])
+        .collect();
     all.sort_by(|left, right| left.0.cmp(&right.0));
     let (name, position): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let still = vec![0.0; name.len()];
@@ -173,9 +184,9 @@ pub(super) fn robot_state(state: &RobotState) -> baxter_core_msgs::AssemblyState
 pub(super) fn skeleton(body: &BodyPose) -> tf2_msgs::TFMessage {
     let arms = Side::BOTH.into_iter().flat_map(|side| {
         let tracked = [(Joint::Hand, "hand"), (Joint::Elbow, "elbow"), (Joint::Shoulder, "shoulder")];
-        tracked.into_iter().filter_map(move |(joint, word)| {
-            Some((format!("{side}_{word}_1"), body.arms.get(side).position(joint)?))
-        })
+        tracked
+            .into_iter()
+            .filter_map(move |(joint, word)| Some((format!("{side}_{word}_1"), body.arms.get(side).position(joint)?)))
     });
     let neck = body.neck.map(|neck| ("neck_1".to_owned(), neck.position));
     let transforms = arms.chain(neck).map(|(name, place)| geometry_msgs::TransformStamped {
@@ -210,9 +221,17 @@ mod tests {
     #[test]
     fn an_endpoint_and_a_skeleton_return_as_they_were() {
         let pose = Pose::new(nalgebra::Vector3::new(0.5, -0.2, 0.3), nalgebra::Vector3::new(0.1, 0.2, 0.3));
-        let sample = EndpointSample { side: Side::Right, stamp: Stamp::from_nanoseconds(9), pose, wrench: crate::geometry::Wrench { force: [1.0, -2.0, 3.0].into(), torque: [0.1, 0.2, 0.3].into() } };
+        let sample = EndpointSample {
+            side: Side::Right,
+            stamp: Stamp::from_nanoseconds(9),
+            pose,
+            wrench: crate::geometry::Wrench { force: [1.0, -2.0, 3.0].into(), torque: [0.1, 0.2, 0.3].into() },
+        };
         let back = decode::endpoint(Side::Right, &endpoint(&sample));
-        assert!((back.pose.translation.vector - pose.translation.vector).norm() < 1e-12 && back.pose.rotation.angle_to(&pose.rotation) < 1e-7);
+        assert!(
+            (back.pose.translation.vector - pose.translation.vector).norm() < 1e-12
+                && back.pose.rotation.angle_to(&pose.rotation) < 1e-7
+        );
         assert_eq!((back.wrench, back.stamp), (sample.wrench, sample.stamp));
         assert!(skeleton(&BodyPose::default()).transforms.is_empty());
     }

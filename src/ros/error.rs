@@ -34,7 +34,9 @@ pub enum RosError {
         reason: String,
     },
     /// The embedded master cannot start.
-    #[error("the embedded ROS master cannot listen on {address} ({reason}): is another master running there? Choose another --port")]
+    #[error(
+        "the embedded ROS master cannot listen on {address} ({reason}): is another master running there? Choose another --port"
+    )]
     MasterAddress {
         /// Where it should listen.
         address: String,

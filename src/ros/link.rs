@@ -296,13 +296,19 @@ fn subscribe(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosE
         (Side::Right, "/robot/limb/right/endpoint_state", "/robot/limb/right/collision_detection_state"),
     ] {
         let decode = move |message| Decoded::Input(Input::Endpoint(decode::endpoint(side, &message)));
-        all.push(Subscription::new::<baxter_core_msgs::EndpointState>(need(endpoint, QUEUE, HUNDRED_HERTZ, true), sink, decode)?);
+        all.push(Subscription::new::<baxter_core_msgs::EndpointState>(
+            need(endpoint, QUEUE, HUNDRED_HERTZ, true),
+            sink,
+            decode,
+        )?);
         let decode = move |message: baxter_core_msgs::CollisionDetectionState| {
             Decoded::Input(Input::Collision { side, active: message.collision_state })
         };
         all.push(Subscription::new(need(collision, QUEUE, ANY_RATE, false), sink, decode)?);
     }
-    let decode = |message: sensor_msgs::JointState| decode::joints(&message).map_or(Decoded::Kept, |sample| Decoded::Input(Input::Joints(sample)));
+    let decode = |message: sensor_msgs::JointState| {
+        decode::joints(&message).map_or(Decoded::Kept, |sample| Decoded::Input(Input::Joints(sample)))
+    };
     all.push(Subscription::new(need("/robot/joint_states", QUEUE, JOINT_HERTZ, true), sink, decode)?);
     let decode = |message: AnyAssemblyState| {
         decode::robot_state(&message, now()).map_or(Decoded::Unusable, |state| Decoded::Input(Input::Robot(state)))

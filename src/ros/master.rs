@@ -47,12 +47,14 @@ impl EmbeddedMaster {
     /// # Errors
     /// Where something listens there already, or the system has no thread to give.
     pub fn bind(address: SocketAddr) -> Result<Self, RosError> {
-        let broken = |error: std::io::Error| RosError::MasterAddress { address: address.to_string(), reason: error.to_string() };
+        let broken =
+            |error: std::io::Error| RosError::MasterAddress { address: address.to_string(), reason: error.to_string() };
         let listener = TcpListener::bind(address).map_err(broken)?;
         let address = listener.local_addr().map_err(broken)?;
         let ended = Arc::new(AtomicBool::new(false));
         let service = Service::new(&format!("http://{address}/"), address.port());
-        serve(listener, Arc::new(service), Arc::clone(&ended)).map_err(|error| RosError::thread("the embedded master", error))?;
+        serve(listener, Arc::new(service), Arc::clone(&ended))
+            .map_err(|error| RosError::thread("the embedded master", error))?;
         Ok(Self { address, ended })
     }
 
@@ -98,7 +100,12 @@ impl Service {
         for (key, value) in [("/run_id", run.as_str()), ("/rosdistro", "noetic\n"), ("/rosversion", "1.15.15\n")] {
             parameters.set(key, Value::text(value));
         }
-        Self { uri: uri.to_owned(), registry: Mutex::default(), parameters: Mutex::new(parameters), notifier: Notifier::default() }
+        Self {
+            uri: uri.to_owned(),
+            registry: Mutex::default(),
+            parameters: Mutex::new(parameters),
+            notifier: Notifier::default(),
+        }
     }
 
     fn registry(&self) -> MutexGuard<'_, Registry> {
@@ -152,8 +159,14 @@ impl Service {
             "registerService" => self.registry_service(caller, text(0), text(1), text(2)),
             "unregisterPublisher" => self.unregister(Role::Publisher, caller, text(0), text(1)),
             "unregisterSubscriber" => self.unregister(Role::Subscriber, caller, text(0), text(1)),
-            "unregisterService" => Value::Integer(i32::from(self.registry().unregister_service(&resolve(text(0), caller), text(1)))),
-            "lookupNode" => return Some(self.registry().node(text(0)).map(Value::text).ok_or_else(|| format!("unknown node {}", text(0)))),
+            "unregisterService" => {
+                Value::Integer(i32::from(self.registry().unregister_service(&resolve(text(0), caller), text(1))))
+            }
+            "lookupNode" => {
+                return Some(
+                    self.registry().node(text(0)).map(Value::text).ok_or_else(|| format!("unknown node {}", text(0))),
+                );
+            }
             "lookupService" => {
                 let name = resolve(text(0), caller);
                 return Some(self.registry().service(&name).map(Value::text).ok_or_else(|| "no provider".to_owned()));
@@ -185,10 +198,16 @@ impl Service {
             "getParam" => self.parameters().get(&key()).ok_or_else(|| format!("Parameter [{}] is not set", key())),
             "deleteParam" => self.delete_parameter(&key()),
             "hasParam" => Ok(Value::Boolean(self.parameters().get(&key()).is_some())),
-            "searchParam" => self.parameters().search(caller, text(0)).map(Value::text).ok_or_else(|| format!("Cannot find parameter [{}]", text(0))),
+            "searchParam" => self
+                .parameters()
+                .search(caller, text(0))
+                .map(Value::text)
+                .ok_or_else(|| format!("Cannot find parameter [{}]", text(0))),
             "getParamNames" => Ok(Value::texts(self.parameters().names())),
             "subscribeParam" => Ok(self.parameters().subscribe(&resolve(text(1), caller), text(0))),
-            "unsubscribeParam" => Ok(Value::Integer(i32::from(self.parameters().unsubscribe(&resolve(text(1), caller), text(0))))),
+            "unsubscribeParam" => {
+                Ok(Value::Integer(i32::from(self.parameters().unsubscribe(&resolve(text(1), caller), text(0)))))
+            }
             _ => return None,
         })
     }
@@ -211,7 +230,8 @@ impl Handler for Service {
         if method == "system.multicall" {
             return self.several(parameters.first().and_then(Value::as_array).unwrap_or_default());
         }
-        let Some((caller, rest)) = parameters.split_first().and_then(|(caller, rest)| Some((caller.as_text()?, rest))) else {
+        let Some((caller, rest)) = parameters.split_first().and_then(|(caller, rest)| Some((caller.as_text()?, rest)))
+        else {
             return failed("the first parameter has to be the caller's name");
         };
         match self.graph(method, caller, rest).or_else(|| self.parameter(method, caller, rest)) {

@@ -182,7 +182,10 @@ impl SimNode {
         }
         if self.beats.is_multiple_of(COLLISION_BEATS) || !senses.collisions.is_empty() {
             for (side, active) in self.colliding.iter() {
-                let message = baxter_core_msgs::CollisionDetectionState { header: encode::header(now, ""), collision_state: *active };
+                let message = baxter_core_msgs::CollisionDetectionState {
+                    header: encode::header(now, ""),
+                    collision_state: *active,
+                };
                 drop(self.topics.collisions.get(side).send(message));
             }
         }
@@ -226,7 +229,11 @@ fn commanded(side: Side, message: &baxter_core_msgs::JointCommand) -> Option<Joi
     if message.mode != baxter_core_msgs::JointCommand::POSITION_MODE {
         return None;
     }
-    let state = sensor_msgs::JointState { name: message.names.clone(), position: message.command.clone(), ..Default::default() };
+    let state = sensor_msgs::JointState {
+        name: message.names.clone(),
+        position: message.command.clone(),
+        ..Default::default()
+    };
     let sample = super::decode::joints(&state)?;
     let mut joints = JointVector::zeros();
     for (slot, position) in joints.iter_mut().zip(sample.positions.get(side)) {

@@ -58,7 +58,8 @@ impl Subscription {
         let make: Make = Box::new(move || {
             let (decode, sink, monitor) = (Arc::clone(&decode), Arc::clone(&sink), watched.clone());
             let callback = move |message: T| receive(message, decode.as_ref(), &sink, &monitor);
-            rosrust::subscribe(need.topic, need.queue, callback).map_err(|error| RosError::registration(need.topic, error))
+            rosrust::subscribe(need.topic, need.queue, callback)
+                .map_err(|error| RosError::registration(need.topic, error))
         });
         let current = Some(make()?);
         Ok(Self { monitor, make, current })

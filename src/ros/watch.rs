@@ -8,8 +8,8 @@
 //! All of this waits for the network, so it has a thread of its own, away from screen, stop and supervisor.
 
 use super::graph::{Graph, topic_types};
-use super::node::MASTER_LIMIT;
 use super::monitor::now;
+use super::node::MASTER_LIMIT;
 use super::subscription::{Sink, Subscription};
 use super::xmlrpc::Value;
 use super::xmlrpc::http::{CallError, call_ros};
@@ -108,13 +108,23 @@ impl Watch {
         let mine = |nodes: &[String]| nodes.contains(&self.node);
         for topic in self.registrations.published.iter().filter(|topic| !mine(graph.publishers_of(topic))) {
             let kind = self.kind_of(topic);
-            call_ros(&self.master, "registerPublisher", &[caller.clone(), Value::text(topic), kind, Value::text(&self.uri)], MASTER_LIMIT)?;
+            call_ros(
+                &self.master,
+                "registerPublisher",
+                &[caller.clone(), Value::text(topic), kind, Value::text(&self.uri)],
+                MASTER_LIMIT,
+            )?;
         }
         for topic in self.registrations.subscribed.iter().filter(|topic| !mine(graph.subscribers_of(topic))) {
             let kind = self.kind_of(topic);
             let parameters = [caller.clone(), Value::text(topic), kind, Value::text(&self.uri)];
             let publishers = call_ros(&self.master, "registerSubscriber", &parameters, MASTER_LIMIT)?;
-            call_ros(&self.uri, "publisherUpdate", &[Value::text("/master"), Value::text(topic), publishers], MASTER_LIMIT)?;
+            call_ros(
+                &self.uri,
+                "publisherUpdate",
+                &[Value::text("/master"), Value::text(topic), publishers],
+                MASTER_LIMIT,
+            )?;
         }
         for (service, address) in &self.registrations.services {
             if !graph.services.get(service).is_some_and(|nodes| mine(nodes)) {

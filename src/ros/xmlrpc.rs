@@ -171,7 +171,8 @@ mod tests {
     fn what_python_writes_is_read() {
         let text = "<?xml version='1.0'?>\n<methodCall>\n<methodName>setParam</methodName>\n<params>\n<param>\n<value><string>/node</string></value>\n</param>\n<param>\n<value><array><data>\n<value><int>1</int></value>\n<value><boolean>1</boolean></value>\n<value><double>2.5</double></value>\n<value><nil/></value></data></array></value>\n</param>\n</params>\n</methodCall>\n";
         assert!(parse_call(text).is_err(), "nil is no value of ROS");
-        let (method, parameters) = parse_call(&text.replace("<value><nil/></value>", "<value>plain &lt;</value>")).unwrap();
+        let (method, parameters) =
+            parse_call(&text.replace("<value><nil/></value>", "<value>plain &lt;</value>")).unwrap();
         assert_eq!(method, "setParam");
         let expected = vec![Value::Integer(1), Value::Boolean(true), Value::Double(2.5), Value::text("plain <")];
         assert_eq!(parameters, [Value::text("/node"), Value::Array(expected)]);
@@ -179,7 +180,8 @@ mod tests {
 
     #[test]
     fn a_tower_of_arrays_is_refused_before_it_fills_the_stack() {
-        let text = format!("<methodCall><methodName>x</methodName><params><param>{}", "<value><array><data>".repeat(100_000));
+        let text =
+            format!("<methodCall><methodName>x</methodName><params><param>{}", "<value><array><data>".repeat(100_000));
         assert_eq!(parse_call(&text), Err(ParseError::TooDeep));
     }
 

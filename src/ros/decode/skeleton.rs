@@ -67,8 +67,8 @@ impl Skeleton {
                 let name = format!("{side}_{word}_{user}");
                 // A frame of an older image would put together a person who never was.
                 self.frames.get(&name).filter(|frame| is_same_image(frame.stamp, newest))?;
-                let place = self.place(&name);
-                pose.arms.get_mut(side).set(joint, place);
+                let place = self.place(&name)?;
+                pose.arms.get_mut(side).set(joint, Some(place));
             }
         }
         pose.neck = self.place(&format!("neck_{user}"));
@@ -100,7 +100,8 @@ fn is_same_image(stamp: Stamp, newest: Stamp) -> bool {
 /// The user's number in a tracked joint's frame.
 fn user_of(child: &str) -> Option<&str> {
     let (joint, user) = child.rsplit_once('_')?;
-    let known = TRACKED.iter().any(|(_, word)| joint.strip_suffix(word).is_some_and(|side| matches!(side, "left_" | "right_")));
+    let known =
+        TRACKED.iter().any(|(_, word)| joint.strip_suffix(word).is_some_and(|side| matches!(side, "left_" | "right_")));
     (known && !user.is_empty() && user.bytes().all(|byte| byte.is_ascii_digit())).then_some(user)
 }
 
@@ -111,7 +112,11 @@ mod tests {
 
     fn frame(parent: &str, child: &str, [x, y, z]: [f64; 3], nanoseconds: u32) -> geometry_msgs::TransformStamped {
         geometry_msgs::TransformStamped {
-            header: std_msgs::Header { seq: 0, stamp: rosrust::Time { sec: 5, nsec: nanoseconds }, frame_id: parent.into() },
+            header: std_msgs::Header {
+                seq: 0,
+                stamp: rosrust::Time { sec: 5, nsec: nanoseconds },
+                frame_id: parent.into(),
+            },
             child_frame_id: child.into(),
             transform: geometry_msgs::Transform {
                 translation: geometry_msgs::Vector3 { x, y, z },

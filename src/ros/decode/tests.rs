@@ -18,11 +18,21 @@ fn both_forms_of_the_state_are_read() {
 
 #[test]
 fn the_state_that_goes_out_is_the_state_that_comes_in() {
-    let message = baxter_core_msgs::AssemblyState { ready: true, enabled: true, stopped: false, error: true, estop_button: 2, estop_source: 4 };
+    let message = baxter_core_msgs::AssemblyState {
+        ready: true,
+        enabled: true,
+        stopped: false,
+        error: true,
+        estop_button: 2,
+        estop_source: 4,
+    };
     let body = message.encode_vec().unwrap();
     let any = AnyAssemblyState::decode_slice(&body).unwrap();
     let state = robot_state(&any, Stamp::ZERO).unwrap();
-    assert_eq!((state.ready, state.error, state.button, state.source), (Some(true), true, RedButton::Unknown, StopSource::Brain));
+    assert_eq!(
+        (state.ready, state.error, state.button, state.source),
+        (Some(true), true, RedButton::Unknown, StopSource::Brain)
+    );
 }
 
 #[test]
@@ -35,13 +45,21 @@ fn joints_are_found_by_name_in_any_order_and_fingers_are_none() {
     let sample = joints(&message).unwrap();
     assert_eq!(sample.positions.left, [Some(-0.25), None, None, None, None, None, None]);
     assert_eq!(sample.positions.right, [None, None, None, None, None, None, Some(0.5)]);
-    let finger = sensor_msgs::JointState { name: vec!["r_gripper_l_finger_joint".into()], position: vec![0.01], ..Default::default() };
+    let finger = sensor_msgs::JointState {
+        name: vec!["r_gripper_l_finger_joint".into()],
+        position: vec![0.01],
+        ..Default::default()
+    };
     assert_eq!(joints(&finger), None);
 }
 
 #[test]
 fn names_without_positions_are_not_invented() {
-    let message = sensor_msgs::JointState { name: vec!["left_s0".into(), "left_s1".into()], position: vec![1.0], ..Default::default() };
+    let message = sensor_msgs::JointState {
+        name: vec!["left_s0".into(), "left_s1".into()],
+        position: vec![1.0],
+        ..Default::default()
+    };
     assert_eq!(joints(&message).unwrap().positions.left[1], None);
 }
 
@@ -53,9 +71,14 @@ fn image(width: u32, height: u32, step: u32, bytes: usize, encoding: &str) -> se
 fn an_image_whose_size_and_data_disagree_is_nothing() {
     assert!(depth(image(4, 3, 8, 24, "16UC1")).is_some());
     assert!(depth(image(4, 3, 10, 30, "16UC1")).is_some(), "rows may be padded");
-    for (width, height, step, bytes, encoding) in
-        [(4, 3, 8, 23, "16UC1"), (4, 3, 4, 12, "16UC1"), (0, 3, 8, 24, "16UC1"), (4, 3, 8, 24, "rgb8"), (4, 3, 8, 24, "32FC1"), (u32::MAX, u32::MAX, u32::MAX, 1, "16UC1")]
-    {
+    for (width, height, step, bytes, encoding) in [
+        (4, 3, 8, 23, "16UC1"),
+        (4, 3, 4, 12, "16UC1"),
+        (0, 3, 8, 24, "16UC1"),
+        (4, 3, 8, 24, "rgb8"),
+        (4, 3, 8, 24, "32FC1"),
+        (u32::MAX, u32::MAX, u32::MAX, 1, "16UC1"),
+    ] {
         assert!(depth(image(width, height, step, bytes, encoding)).is_none(), "{width}x{height} {encoding}");
     }
 }

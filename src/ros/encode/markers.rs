@@ -3,7 +3,10 @@
 use super::{BASE, Snapshot, header, point};
 use crate::body::{Joint, Side};
 use crate::geometry::Point;
-use crate::ros::message::{geometry_msgs, std_msgs, visualization_msgs::{Marker, MarkerArray}};
+use crate::ros::message::{
+    geometry_msgs, std_msgs,
+    visualization_msgs::{Marker, MarkerArray},
+};
 
 /// For how long a marker stays when no newer one comes, in seconds: what is not fresh disappears.
 const LIFETIME_SECONDS: i32 = 1;
@@ -43,7 +46,10 @@ fn line(snapshot: &Snapshot, name: &str, id: i32, points: &[Point], [r, g, b]: [
         id,
         type_: i32::from(Marker::LINE_STRIP),
         action: i32::from(Marker::ADD),
-        pose: geometry_msgs::Pose { orientation: geometry_msgs::Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 }, ..Default::default() },
+        pose: geometry_msgs::Pose {
+            orientation: geometry_msgs::Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 },
+            ..Default::default()
+        },
         scale: geometry_msgs::Vector3 { x: LINE, y: 0.0, z: 0.0 },
         color: std_msgs::ColorRGBA { r, g, b, a: 1.0 },
         lifetime: rosrust::Duration { sec: LIFETIME_SECONDS, nsec: 0 },

@@ -8,7 +8,10 @@ use rosrust::Service;
 use std::sync::Arc;
 
 pub(super) fn serve(sink: &Sink) -> Result<Vec<Service>, RosError> {
-    [("~stop", Command::Stop), ("~hold", Command::Hold)].into_iter().map(|(name, command)| one(name, command, sink)).collect()
+    [("~stop", Command::Stop), ("~hold", Command::Hold)]
+        .into_iter()
+        .map(|(name, command)| one(name, command, sink))
+        .collect()
 }
 
 fn one(name: &str, command: Command, sink: &Sink) -> Result<Service, RosError> {

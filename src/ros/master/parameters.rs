@@ -104,7 +104,8 @@ impl Parameters {
 
     /// Whoever listens to the key itself, to a branch above it, or to something below it, hears of it.
     fn notices(&self, changed: &str) -> Vec<Notice> {
-        let is_below = |inner: &str, outer: &str| inner == outer || outer == "/" || inner.starts_with(&format!("{outer}/"));
+        let is_below =
+            |inner: &str, outer: &str| inner == outer || outer == "/" || inner.starts_with(&format!("{outer}/"));
         let touched = self.listeners.iter().filter(|(key, _)| is_below(changed, key) || is_below(key, changed));
         touched
             .flat_map(|(key, uris)| {
@@ -168,7 +169,9 @@ mod tests {
     fn listeners_hear_of_their_key_and_of_what_is_above_and_below_it() {
         let mut parameters = Parameters::default();
         assert_eq!(parameters.subscribe("/a/b", "http://n:1/"), Value::Struct(BTreeMap::new()));
-        for (key, value) in [("/a/b", Value::Integer(1)), ("/a/b/c", Value::Integer(2)), ("/a", Value::Struct(BTreeMap::new()))] {
+        for (key, value) in
+            [("/a/b", Value::Integer(1)), ("/a/b/c", Value::Integer(2)), ("/a", Value::Struct(BTreeMap::new()))]
+        {
             let notices = parameters.set(key, value);
             assert_eq!((notices.len(), notices[0].method), (1, "paramUpdate"), "{key}");
         }

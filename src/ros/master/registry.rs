@@ -27,7 +27,14 @@ pub(super) struct Registry {
 
 impl Registry {
     /// Registers a node for a topic; returns the addresses on the other side of the topic, and whom to tell what.
-    pub(super) fn register(&mut self, role: Role, caller: &str, topic: &str, kind: &str, uri: &str) -> (Vec<String>, Vec<Notice>) {
+    pub(super) fn register(
+        &mut self,
+        role: Role,
+        caller: &str,
+        topic: &str,
+        kind: &str,
+        uri: &str,
+    ) -> (Vec<String>, Vec<Notice>) {
         let mut notices = self.enter(caller, uri);
         let known = self.types.entry(topic.to_owned()).or_insert_with(|| kind.to_owned());
         if kind != "*" && (role == Role::Publisher || known == "*") {
@@ -66,7 +73,9 @@ impl Registry {
 
     /// Takes a service back, unless somebody else serves it by now.
     pub(super) fn unregister_service(&mut self, service: &str, address: &str) -> bool {
-        let Some((node, _)) = self.services.get(service).filter(|(_, known)| known == address).cloned() else { return false };
+        let Some((node, _)) = self.services.get(service).filter(|(_, known)| known == address).cloned() else {
+            return false;
+        };
         self.services.remove(service);
         self.forget_if_idle(&node);
         true
@@ -96,8 +105,11 @@ impl Registry {
 
     /// The whole graph: publishers, subscribers, services.
     pub(super) fn state(&self) -> Value {
-        let pair = |name: &String, nodes: &[String]| Value::Array(vec![Value::text(name), Value::texts(nodes.iter().cloned())]);
-        let members = |members: &Members| Value::Array(members.iter().map(|(topic, nodes)| pair(topic, nodes)).collect());
+        let pair = |name: &String, nodes: &[String]| {
+            Value::Array(vec![Value::text(name), Value::texts(nodes.iter().cloned())])
+        };
+        let members =
+            |members: &Members| Value::Array(members.iter().map(|(topic, nodes)| pair(topic, nodes)).collect());
         let services = self.services.iter().map(|(service, (node, _))| pair(service, std::slice::from_ref(node)));
         Value::Array(vec![members(&self.publishers), members(&self.subscribers), Value::Array(services.collect())])
     }
@@ -120,8 +132,15 @@ impl Registry {
     /// Notes a node's address. Where a new process takes a name over, the old one is told to end, and what it had is gone
     /// before the new one's first registration is entered.
     fn enter(&mut self, caller: &str, uri: &str) -> Vec<Notice> {
-        let Some(old) = self.nodes.insert(caller.to_owned(), uri.to_owned()).filter(|old| old != uri) else { return Vec::new() };
-        let gone: Vec<String> = self.publishers.iter().filter(|(_, nodes)| nodes.iter().any(|node| node == caller)).map(|(topic, _)| topic.clone()).collect();
+        let Some(old) = self.nodes.insert(caller.to_owned(), uri.to_owned()).filter(|old| old != uri) else {
+            return Vec::new();
+        };
+        let gone: Vec<String> = self
+            .publishers
+            .iter()
+            .filter(|(_, nodes)| nodes.iter().any(|node| node == caller))
+            .map(|(topic, _)| topic.clone())
+            .collect();
         for members in [&mut self.publishers, &mut self.subscribers] {
             members.retain(|_, nodes| {
                 nodes.retain(|node| node != caller);
@@ -130,19 +149,27 @@ impl Registry {
         }
         self.services.retain(|_, (node, _)| node != caller);
         let reason = format!("[{caller}] Reason: new node registered with same name");
-        let end = Notice { uri: old, method: "shutdown", parameters: vec![Value::text("/master"), Value::text(reason)] };
+        let end =
+            Notice { uri: old, method: "shutdown", parameters: vec![Value::text("/master"), Value::text(reason)] };
         std::iter::once(end).chain(gone.iter().flat_map(|topic| self.publisher_updates(topic))).collect()
     }
 
     fn publisher_updates(&self, topic: &str) -> Vec<Notice> {
         let publishers = Value::texts(self.addresses(&self.publishers, topic));
-        let tell = |uri| Notice { uri, method: "publisherUpdate", parameters: vec![Value::text("/master"), Value::text(topic), publishers.clone()] };
+        let tell = |uri| Notice {
+            uri,
+            method: "publisherUpdate",
+            parameters: vec![Value::text("/master"), Value::text(topic), publishers.clone()],
+        };
         self.addresses(&self.subscribers, topic).into_iter().map(tell).collect()
     }
 
     fn forget_if_idle(&mut self, node: &str) {
         let takes_part = |members: &Members| members.values().flatten().any(|member| member == node);
-        if !takes_part(&self.publishers) && !takes_part(&self.subscribers) && !self.services.values().any(|(name, _)| name == node) {
+        if !takes_part(&self.publishers)
+            && !takes_part(&self.subscribers)
+            && !self.services.values().any(|(name, _)| name == node)
+        {
             self.nodes.remove(node);
         }
     }

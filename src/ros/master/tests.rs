@@ -60,7 +60,10 @@ fn what_nodes_and_tools_ask_is_answered() {
 fn several_calls_in_one_are_answered_one_by_one() {
     let master = EmbeddedMaster::start(0).unwrap();
     let one = |method: &str, parameters: Vec<Value>| {
-        Value::Struct(BTreeMap::from([("methodName".to_owned(), Value::text(method)), ("params".to_owned(), Value::Array(parameters))]))
+        Value::Struct(BTreeMap::from([
+            ("methodName".to_owned(), Value::text(method)),
+            ("params".to_owned(), Value::Array(parameters)),
+        ]))
     };
     let set = one("setParam", vec![Value::text("/launch"), Value::text("/a"), Value::Integer(5)]);
     let get = one("getParam", vec![Value::text("/launch"), Value::text("/a")]);
@@ -75,7 +78,10 @@ fn several_calls_in_one_are_answered_one_by_one() {
 fn a_master_on_a_port_in_use_is_refused_with_the_address() {
     let first = EmbeddedMaster::start(0).unwrap();
     let error = EmbeddedMaster::start(first.address.port()).unwrap_err();
-    assert!(matches!(&error, RosError::MasterAddress { address, .. } if *address == first.address.to_string()), "{error}");
+    assert!(
+        matches!(&error, RosError::MasterAddress { address, .. } if *address == first.address.to_string()),
+        "{error}"
+    );
 }
 
 #[test]

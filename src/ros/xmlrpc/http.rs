@@ -138,7 +138,11 @@ pub trait Handler: Send + Sync + 'static {
 ///
 /// # Errors
 /// Where the system has no thread to give.
-pub fn serve(listener: TcpListener, handler: Arc<dyn Handler>, ended: Arc<AtomicBool>) -> io::Result<thread::JoinHandle<()>> {
+pub fn serve(
+    listener: TcpListener,
+    handler: Arc<dyn Handler>,
+    ended: Arc<AtomicBool>,
+) -> io::Result<thread::JoinHandle<()>> {
     thread::Builder::new().name("xmlrpc".into()).spawn(move || {
         let open = Arc::new(AtomicUsize::new(0));
         for stream in listener.incoming() {
@@ -227,7 +231,13 @@ mod tests {
     fn garbage_does_not_end_the_server() {
         let address = server();
         let host = address.strip_prefix("http://").unwrap().trim_end_matches('/').to_owned();
-        for garbage in ["", "\0\0\0", "POST / HTTP/1.1\r\n\r\n", "POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", "POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\n<a>"] {
+        for garbage in [
+            "",
+            "\0\0\0",
+            "POST / HTTP/1.1\r\n\r\n",
+            "POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n",
+            "POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\n<a>",
+        ] {
             let mut stream = TcpStream::connect(&host).unwrap();
             stream.write_all(garbage.as_bytes()).unwrap();
             stream.shutdown(Shutdown::Write).unwrap();

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""A rospy peer that drives the simulated Baxter: it moves only when enabled, and stops when told."""
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+
+def make_messages():
+    """Writes the Python classes of baxter_core_msgs from msg/: Debian has no such package."""
+    here = os.path.dirname(os.path.realpath(__file__))
+    messages = os.path.join(here, "..", "..", "msg")
+    folder = tempfile.mkdtemp(prefix="valet_messages_")
+    out = os.path.join(folder, "baxter_core_msgs", "msg")
+    os.makedirs(out)
+    includes = []
+    for package in os.listdir(messages):
+        includes += ["-I%s:%s" % (package, os.path.join(messages, package, "msg"))]
+    # std_msgs/Header is built into rosrust and so not among our definitions.
+    includes += ["-Istd_msgs:/usr/share/std_msgs/msg"]
+    source = os.path.join(messages, "baxter_core_msgs", "msg")
+    files = [os.path.join(source, name) for name in sorted(os.listdir(source))]
+    generator = "/usr/lib/genpy/genmsg_py.py"
+    subprocess.check_call([generator, "-p", "baxter_core_msgs", "-o", out] + includes + files)
+    subprocess.check_call([generator, "--initpy", "-p", "baxter_core_msgs", "-o", out])
+    open(os.path.join(folder, "baxter_core_msgs", "__init__.py"), "w").close()
+    sys.path.insert(0, folder)
+
+
+make_messages()
+
+import rospy  # noqa: E402
+import rostest  # noqa: E402
+from baxter_core_msgs.msg import AssemblyState, EndpointState, JointCommand  # noqa: E402
+from sensor_msgs.msg import JointState  # noqa: E402
+from std_msgs.msg import Bool, Empty  # noqa: E402
+
+JOINTS = ["left_" + joint for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2")]
+
+
+class SimulatedRobot(unittest.TestCase):
+    """The robot's own rules, seen from outside."""
+
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("simulated_robot_peer")
+        cls.changed = threading.Condition()
+        cls.state, cls.joints, cls.fingers, cls.endpoints = None, None, 0, 0
+        rospy.Subscriber("/robot/state", AssemblyState, cls.take_state, queue_size=1)
+        rospy.Subscriber("/robot/joint_states", JointState, cls.take_joints, queue_size=8)
+        rospy.Subscriber("/robot/limb/left/endpoint_state", EndpointState, cls.take_endpoint, queue_size=8)
+        cls.stop = rospy.Publisher("/robot/set_super_stop", Empty, queue_size=1)
+        cls.reset = rospy.Publisher("/robot/set_super_reset", Empty, queue_size=1)
+        cls.enable = rospy.Publisher("/robot/set_super_enable", Bool, queue_size=1)
+        cls.command = rospy.Publisher("/robot/limb/left/joint_command", JointCommand, queue_size=1)
+
+    @classmethod
+    def take_state(cls, message):
+        with cls.changed:
+            cls.state = message
+            cls.changed.notify_all()
+
+    @classmethod
+    def take_joints(cls, message):
+        with cls.changed:
+            if len(message.name) == 1:
+                cls.fingers += 1
+            else:
+                cls.joints = message
+            cls.changed.notify_all()
+
+    @classmethod
+    def take_endpoint(cls, _message):
+        with cls.changed:
+            cls.endpoints += 1
+            cls.changed.notify_all()
+
+    def until(self, what, condition, act=None):
+        """Waits for a condition, repeating an act as the robot's own tools do; gives up after 15 s."""
+        end = rospy.get_time() + 15.0
+        while rospy.get_time() < end:
+            if act:
+                act()
+            with self.changed:
+                if condition():
+                    return
+                self.changed.wait(0.02)
+        self.fail("not within 15 s: " + what)
+
+    def positions(self):
+        named = dict(zip(self.joints.name, self.joints.position))
+        return [named[joint] for joint in JOINTS]
+
+    def ask(self, goal):
+        self.command.publish(JointCommand(mode=JointCommand.POSITION_MODE, command=goal, names=JOINTS))
+
+    def test_1_topics_come_as_from_the_real_robot(self):
+        self.until("joints, fingers and end points", lambda: self.joints and self.fingers > 5 and self.endpoints > 50)
+        self.assertEqual(self.joints.name, sorted(self.joints.name))
+        self.assertEqual(len(self.joints.name), 17)
+
+    def test_2_disabled_it_does_not_move(self):
+        self.until("a state", lambda: self.state is not None and self.joints is not None)
+        self.assertFalse(self.state.enabled)
+        before = self.positions()
+        goal = [position + 0.2 for position in before]
+        for _ in range(50):
+            self.ask(goal)
+            rospy.sleep(0.01)
+        self.assertEqual(before, self.positions())
+
+    def test_3_enabled_it_follows(self):
+        self.until("enabled", lambda: self.state.enabled, lambda: self.enable.publish(True))
+        goal = [position + 0.1 for position in self.positions()]
+        self.until(
+            "at the goal",
+            lambda: max(abs(a - b) for a, b in zip(goal, self.positions())) < 0.02,
+            lambda: self.ask(goal),
+        )
+
+    def test_4_stopped_it_stands_until_reset_and_enable(self):
+        self.until("stopped", lambda: self.state.stopped, lambda: self.stop.publish())
+        self.assertFalse(self.state.enabled)
+        rospy.sleep(0.3)
+        before = self.positions()
+        goal = [position + 0.2 for position in before]
+        for _ in range(30):
+            self.ask(goal)
+            rospy.sleep(0.01)
+        self.assertEqual(before, self.positions())
+        self.until("reset", lambda: not self.state.stopped, lambda: self.reset.publish())
+        self.assertFalse(self.state.enabled, "a reset leaves the robot disabled")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("valet", "simulated_robot", SimulatedRobot)
