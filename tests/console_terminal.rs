@@ -131,6 +131,20 @@ fn sigterm_and_sighup_give_the_terminal_back() {
 }
 
 #[test]
+fn a_terminal_that_goes_away_ends_the_program() {
+    let Session { mut child, terminal, keys, output, .. } = Session::practise();
+    drop((terminal, keys, output));
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("the program outlived its terminal");
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
 fn control_z_is_refused_while_an_arm_may_move() {
     let mut session = Session::practise();
     session.press("\u{1a}");

@@ -10,7 +10,7 @@ use ratatui::crossterm::event::{self, Event, KeyEventKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often the thread looks whether it should end, while no key comes.
 const PATIENCE: Duration = Duration::from_millis(100);
@@ -60,7 +60,13 @@ impl InputThread {
 impl Drop for InputThread {
     fn drop(&mut self) {
         self.leave.store(true, Ordering::Relaxed);
-        if let Some(handle) = self.handle.take() {
+        let Some(handle) = self.handle.take() else { return };
+        // On a terminal that is gone, crossterm's reading never returns: such a thread is left to end with the process.
+        let patience = Instant::now();
+        while !handle.is_finished() && patience.elapsed() < 3 * PATIENCE {
+            thread::sleep(PATIENCE / 10);
+        }
+        if handle.is_finished() {
             // A panic of that thread has already stopped the robot and been told by the hook.
             let _ = handle.join();
         }
