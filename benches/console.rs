@@ -31,7 +31,7 @@ fn frames(criterion: &mut Criterion) {
     let keys = KeyMap::new(&BTreeMap::new()).expect("the default table has no conflicts");
     for screen in Screen::ALL {
         let view = ViewState { screen, size: (AREA.width, AREA.height), span: 60.0, ..ViewState::default() };
-        let scene = Scene { live: &snapshot, view: &view, look: &look, keys: &keys };
+        let scene = Scene { live: &snapshot, view: &view, look, keys: &keys };
         let mut buffer = Buffer::empty(AREA);
         criterion.bench_function(&format!("frame 120x40 {}", screen.name()), |bencher| {
             bencher.iter(|| {

@@ -183,11 +183,12 @@ fn a_panic_stops_the_robot_first_then_restores_the_terminal_then_tells() {
 
 /// Runs a console whose snapshots break; its stop says so on the terminal, where the order of things can be read.
 fn panic_in_the_console() -> ! {
-    use valet::console::{ConsoleOptions, run};
+    use valet::console::{ConsoleOptions, StopHandle, run};
     let stop = || {
         print!("{STOPPED}");
         std::io::stdout().flush().unwrap();
     };
+    let stop: std::sync::Arc<dyn StopHandle> = std::sync::Arc::new(stop);
     let mut turns = 0;
     let snapshots = move || {
         turns += 1;
@@ -195,6 +196,6 @@ fn panic_in_the_console() -> ! {
         None
     };
     let commands = |_| Ok(());
-    let left = run(snapshots, commands, std::sync::Arc::new(stop), None, &ConsoleOptions::default());
+    let left = run(snapshots, commands, &stop, None, &ConsoleOptions::default());
     panic!("the console was left without a panic: {left:?}");
 }

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::output::Output;
-use crate::console::{self, ConsoleOptions, KeyMap, Practice, TABLE};
+use crate::console::{self, ConsoleOptions, KeyMap, Practice, StopHandle, TABLE};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -50,8 +50,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn practise() -> Result<(), Failure> {
     let practice = Practice::new();
-    let stop = Arc::new(practice.clone());
-    let left = console::run(practice.clone(), practice, stop, None, &ConsoleOptions::default());
+    let stop: Arc<dyn StopHandle> = Arc::new(practice.clone());
+    let left = console::run(practice.clone(), practice, &stop, None, &ConsoleOptions::default());
     left.map(|_| ()).map_err(Failure::fault)
 }
 

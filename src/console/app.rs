@@ -84,13 +84,11 @@ impl App {
         if self.view.dialog.is_some() {
             return self.on_dialog_key(chord, snapshot);
         }
-        match self.keys.action(chord, self.view.screen) {
-            Some(action) => self.act(action, snapshot),
-            None => {
-                self.say(format!("{chord} does nothing here; {} shows the keys", self.keys.first_key(Action::Help)));
-                Vec::new()
-            }
+        if let Some(action) = self.keys.action(chord, self.view.screen) {
+            return self.act(action, snapshot);
         }
+        self.say(format!("{chord} does nothing here; {} shows the keys", self.keys.first_key(Action::Help)));
+        Vec::new()
     }
 
     /// The mouse focuses and scrolls, and never acts.

@@ -26,7 +26,7 @@ pub struct Scene<'a> {
     /// What the operator looks at.
     pub view: &'a ViewState,
     /// Theme and glyphs.
-    pub look: &'a Look,
+    pub look: Look,
     /// The keys in force.
     pub keys: &'a KeyMap,
 }

@@ -37,10 +37,10 @@ impl InputThread {
     pub(super) fn start(keys: KeyMap, stop: Arc<dyn StopHandle>, heard: Sender<Heard>) -> std::io::Result<Self> {
         let leave = Arc::new(AtomicBool::new(false));
         let paused = Arc::new(AtomicBool::new(false));
-        let (leaves, pauses) = (Arc::clone(&leave), Arc::clone(&paused));
+        let (told_to_leave, told_to_pause) = (Arc::clone(&leave), Arc::clone(&paused));
         let body = move || {
-            while !leaves.load(Ordering::Relaxed) {
-                if pauses.load(Ordering::Relaxed) {
+            while !told_to_leave.load(Ordering::Relaxed) {
+                if told_to_pause.load(Ordering::Relaxed) {
                     thread::sleep(PATIENCE);
                 } else if !listen(&keys, stop.as_ref(), &heard) {
                     return;

@@ -27,7 +27,7 @@ use std::sync::Arc;
 pub fn run(
     mut snapshots: impl SnapshotSource,
     mut commands: impl CommandSink,
-    stop: Arc<dyn StopHandle>,
+    stop: &Arc<dyn StopHandle>,
     replay: Option<Box<dyn ReplayControl>>,
     options: &ConsoleOptions,
 ) -> Result<ExitReason, ConsoleError> {
@@ -37,10 +37,10 @@ pub fn run(
     }
     let look = Look::from_options(options, |name| std::env::var(name).ok());
     let signals = Signals::register().map_err(ConsoleError::Terminal)?;
-    let _panic = PanicGuard::install(Arc::clone(&stop));
+    let _panic = PanicGuard::install(Arc::clone(stop));
     let guard = TerminalGuard::enter(options.mouse).map_err(ConsoleError::Terminal)?;
     let (sender, heard) = crossbeam_channel::unbounded();
-    let input = InputThread::start(keys.clone(), Arc::clone(&stop), sender).map_err(ConsoleError::Terminal)?;
+    let input = InputThread::start(keys.clone(), Arc::clone(stop), sender).map_err(ConsoleError::Terminal)?;
     let view = ViewState { mouse: options.mouse, ..ViewState::default() };
     let wires = Wires { snapshots: &mut snapshots, commands: &mut commands, stop: stop.as_ref(), replay };
     let mut runner = Runner::new(App::new(keys, view), look, options, wires, guard, signals);

@@ -35,7 +35,7 @@ fn press(app: &mut App, snapshot: &Snapshot, keys: &[&str]) -> Vec<Reaction> {
     keys.iter().flat_map(|text| app.on_key(key(text), snapshot)).collect()
 }
 
-fn drawn(snapshot: &Snapshot, view: &ViewState, look: &Look, size: (u16, u16)) -> Buffer {
+fn drawn(snapshot: &Snapshot, view: &ViewState, look: Look, size: (u16, u16)) -> Buffer {
     let area = Rect::new(0, 0, size.0, size.1);
     let view = ViewState { size, ..view.clone() };
     let mut buffer = Buffer::empty(area);
@@ -67,7 +67,7 @@ fn what_can_move_the_robot_asks_first_and_names_what_will_move() {
     live.trial.phase = crate::snapshot::TrialPhase::Waiting;
     let mut app = app(Screen::Trial);
     assert_eq!(press(&mut app, &live, &["enter"]), []);
-    let screen = text_of(&drawn(&live, &app.view, &COLOUR, (120, 40)));
+    let screen = text_of(&drawn(&live, &app.view, COLOUR, (120, 40)));
     for words in ["right gripper", "strategy force", "iteration 3 of 8", "[ No ]"] {
         assert!(screen.contains(words), "{words}\n{screen}");
     }
@@ -129,9 +129,9 @@ fn a_setting_keeps_its_limits_and_can_be_undone() {
     let live = fixture(Situation::Live);
     let mut app = app(Screen::Trial);
     let sent = press(&mut app, &live, &[",", "+", "u", "down", "-"]);
-    let set = |key: &str, value| Reaction::Send(Command::SetSetting { key: key.into(), value });
+    let changed = |key: &str, value| Reaction::Send(Command::SetSetting { key: key.into(), value });
     let undo = Reaction::Send(Command::UndoSetting { key: "force.threshold_newtons".into() });
-    assert_eq!(sent, [set("force.threshold_newtons", 5.5), undo, set("strategy.step_metres", 0.015)]);
+    assert_eq!(sent, [changed("force.threshold_newtons", 5.5), undo, changed("strategy.step_metres", 0.015)]);
     let mut full = live.clone();
     full.settings.make_mut()[0].value = 10.0;
     assert_eq!(press(&mut self::app(Screen::Trial), &full, &[",", "+"]), []);
@@ -153,15 +153,14 @@ fn a_plot_mark_leads_to_its_line_of_the_log() {
     let mut app = app(Screen::Force);
     press(&mut app, &live, &["[", "enter"]);
     assert_eq!(app.view.screen, Screen::Log);
-    let line = app.view.log_lines(&live).nth(app.view.row).unwrap();
-    assert_eq!(line.id, 58);
+    assert_eq!(app.view.log_lines(&live).nth(app.view.row).unwrap().id, 58);
 }
 
 #[test]
 fn freezing_keeps_the_plots_and_not_the_stop_state() {
     let mut app = app(Screen::Force);
     press(&mut app, &fixture(Situation::Live), &["f"]);
-    let screen = text_of(&drawn(&fixture(Situation::Stopped), &app.view, &COLOUR, (120, 40)));
+    let screen = text_of(&drawn(&fixture(Situation::Stopped), &app.view, COLOUR, (120, 40)));
     assert!(screen.contains("FROZEN") && screen.contains("EMERGENCY STOP (software)"), "{screen}");
     press(&mut app, &fixture(Situation::Stopped), &["f"]);
     assert!(app.view.frozen.is_none());
@@ -172,12 +171,12 @@ fn a_stale_value_is_never_shown_as_a_number() {
     let stale = fixture(Situation::Stale);
     for screen in Screen::ALL {
         let view = ViewState { screen, ..ViewState::default() };
-        let text = text_of(&drawn(&stale, &view, &COLOUR, (120, 40)));
+        let text = text_of(&drawn(&stale, &view, COLOUR, (120, 40)));
         assert!(text.contains("ROBOT STATE STALE"), "{text}");
         assert!(!text.contains("ENABLED"), "{text}");
     }
     let view = ViewState { screen: Screen::Force, ..ViewState::default() };
-    let text = text_of(&drawn(&stale, &view, &COLOUR, (120, 40)));
+    let text = text_of(&drawn(&stale, &view, COLOUR, (120, 40)));
     assert_eq!(text.matches(" STALE ").count(), 2 + 16 + 1, "headings, strips and the robot\n{text}");
 }
 
@@ -188,7 +187,7 @@ fn help_shows_every_action_with_the_keys_in_force() {
     press(&mut app, &live, &["?"]);
     let mut seen = String::new();
     for _ in 0..20 {
-        seen.push_str(&text_of(&drawn(&live, &app.view, &COLOUR, (120, 40))));
+        seen.push_str(&text_of(&drawn(&live, &app.view, COLOUR, (120, 40))));
         press(&mut app, &live, &["page-down"]);
     }
     for entry in TABLE {

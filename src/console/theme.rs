@@ -211,10 +211,9 @@ fn terminal(role: Role) -> Style {
         Role::Stop => Style::new().fg(Color::White).bg(Color::Red).add_modifier(Modifier::BOLD),
         Role::Fault | Role::Resistance => style.fg(Color::Red),
         Role::Late | Role::Threshold => style.fg(Color::Yellow),
-        Role::Stale | Role::Watermark => style.fg(Color::Magenta),
+        Role::Stale | Role::Watermark | Role::Space => style.fg(Color::Magenta),
         Role::Good | Role::Updated => style.fg(Color::Green),
         Role::Focus | Role::Key | Role::Curve | Role::Travelled => style.fg(Color::Cyan),
-        Role::Space => style.fg(Color::Magenta),
         Role::Text | Role::Title | Role::Muted | Role::Border | Role::Planned | Role::Person => style,
     }
 }

@@ -37,6 +37,7 @@ pub struct LogFilter {
 
 /// What the operator looks at.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the operator, independent of the others")]
 pub struct ViewState {
     /// The screen.
     pub screen: Screen,
@@ -152,6 +153,7 @@ impl ViewState {
     }
 
     /// The lines of the log that are shown, oldest first.
+    #[must_use]
     pub fn log_lines<'a>(&'a self, snapshot: &'a Snapshot) -> impl DoubleEndedIterator<Item = &'a LogLine> {
         snapshot.log.iter().filter(|line| self.shows_line(line))
     }

@@ -19,17 +19,14 @@ pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option
         || snapshot.robot.fresh(snapshot.now).is_some_and(|robot| robot.stopped);
     match action {
         Action::Reset => (!stopped).then_some("nothing is stopped"),
-        Action::Enable | Action::Start | Action::Withdraw | Action::GoAhead if stopped => Some("stopped: reset first"),
-        Action::NextIteration | Action::NextStep | Action::PreviousStep if stopped => Some("stopped: reset first"),
-        Action::HoldOrContinue if stopped => Some("stopped: reset first"),
+        _ if stopped && leaves_a_stop(action) => Some("stopped: reset first"),
         Action::Start if phase.is_running() && phase != TrialPhase::Holding => Some("a trial runs"),
         Action::Start => needs_enabled(snapshot),
         Action::HoldOrContinue | Action::Withdraw | Action::Abort | Action::FinishAfterThis if !phase.is_running() => {
             Some("no trial runs")
         }
         Action::GoAhead if phase != TrialPhase::Waiting => Some("nothing waits for it"),
-        Action::Profile | Action::Garment | Action::FirstArm if phase.is_running() => Some("only before a trial"),
-        Action::RecordMovement if phase.is_running() => Some("only before a trial"),
+        _ if phase.is_running() && prepares(action) => Some("only before a trial"),
         Action::Tare | Action::SignCheck if phase.moves() => Some("only when the arms are still"),
         _ if is_replay(action) && snapshot.watermark != Watermark::Replay => Some("only in a replay"),
         _ => None,
@@ -42,6 +39,26 @@ fn needs_enabled(snapshot: &Snapshot) -> Option<&'static str> {
         Some(robot) if !robot.enabled => Some("enable the robot first"),
         Some(_) => None,
     }
+}
+
+/// True for what needs the stop to be reset first.
+const fn leaves_a_stop(action: Action) -> bool {
+    matches!(
+        action,
+        Action::Enable
+            | Action::Start
+            | Action::Withdraw
+            | Action::GoAhead
+            | Action::NextIteration
+            | Action::NextStep
+            | Action::PreviousStep
+            | Action::HoldOrContinue
+    )
+}
+
+/// True for what belongs before a trial.
+const fn prepares(action: Action) -> bool {
+    matches!(action, Action::Profile | Action::Garment | Action::FirstArm | Action::RecordMovement)
 }
 
 const fn is_replay(action: Action) -> bool {

@@ -150,7 +150,7 @@ impl App {
     fn select_mark(&mut self, action: Action, snapshot: &Snapshot) {
         let count = self.view.shown(snapshot).sides.get(self.view.side).force.detections.len();
         self.view.mark = match (count, self.view.mark, action) {
-            (0, _, _) | (_, Some(0), Action::NextMark) | (_, None, Action::NextMark) => None,
+            (0, _, _) | (_, Some(0) | None, Action::NextMark) => None,
             (_, None, _) => Some(0),
             (_, Some(mark), Action::NextMark) => Some(mark - 1),
             (_, Some(mark), _) => Some((mark + 1).min(count - 1)),

@@ -29,11 +29,13 @@ fn heading<'a>(scene: &Scene<'a>, count: usize) -> Line<'a> {
     let all = scene.shown().log.len();
     let mut text = format!("Log: {count} of {all} lines, {} and graver", log.minimum);
     if let Some(solo) = &log.solo {
-        text.push_str(&format!(", only {solo}"));
+        text += ", only ";
+        text += solo;
     }
     if !log.muted.is_empty() {
         let muted: Vec<_> = log.muted.iter().map(String::as_str).collect();
-        text.push_str(&format!(", without {}", muted.join(" ")));
+        text += ", without ";
+        text += &muted.join(" ");
     }
     if log.inverted && !scene.view.filter.is_empty() {
         text.push_str(", filter inverted");

@@ -237,7 +237,7 @@ impl<'a> Runner<'a> {
         // Where the core says nothing, what it said last grows old all the same.
         let aged = silent.then(|| Snapshot { now: self.snapshot.now + silence, ..self.snapshot.clone() });
         let live = aged.as_ref().unwrap_or(&self.snapshot);
-        let scene = Scene { live, view: &self.app.view, look: &self.look, keys: &self.app.keys };
+        let scene = Scene { live, view: &self.app.view, look: self.look, keys: &self.app.keys };
         let drawn = self.guard.draw(|frame| {
             let area = frame.area();
             draw(&scene, area, frame.buffer_mut());

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Every size of a screen in one text, each in a frame that shows its edges.
-fn at_all_sizes(snapshot: &Snapshot, view: &ViewState, look: &Look) -> String {
+fn at_all_sizes(snapshot: &Snapshot, view: &ViewState, look: Look) -> String {
     let picture = |size: (u16, u16)| {
         let text = text_of(&drawn(snapshot, view, look, size));
         let rows: Vec<String> = text.lines().map(|row| format!("|{row}")).collect();
@@ -44,14 +44,14 @@ fn each(mut check: impl FnMut(String, &Snapshot, &ViewState)) {
 #[test]
 fn every_screen_in_unicode() {
     each(|name, snapshot, view| {
-        insta::assert_snapshot!(format!("unicode_{name}"), at_all_sizes(snapshot, view, &COLOUR));
+        insta::assert_snapshot!(format!("unicode_{name}"), at_all_sizes(snapshot, view, COLOUR));
     });
 }
 
 #[test]
 fn every_screen_in_ascii() {
     each(|name, snapshot, view| {
-        let text = at_all_sizes(snapshot, view, &ASCII);
+        let text = at_all_sizes(snapshot, view, ASCII);
         assert!(text.is_ascii(), "{name}\n{text}");
         insta::assert_snapshot!(format!("ascii_{name}"), text);
     });
@@ -60,8 +60,8 @@ fn every_screen_in_ascii() {
 #[test]
 fn every_screen_in_colour_and_in_mono() {
     each(|name, snapshot, view| {
-        let colour = drawn(snapshot, view, &COLOUR, (80, 24));
-        let mono = drawn(snapshot, view, &MONO, (80, 24));
+        let colour = drawn(snapshot, view, COLOUR, (80, 24));
+        let mono = drawn(snapshot, view, MONO, (80, 24));
         assert_eq!(text_of(&colour), text_of(&mono), "{name}: only styles may differ");
         insta::assert_snapshot!(format!("colour_{name}"), styles(&colour));
         insta::assert_snapshot!(format!("mono_{name}"), styles(&mono));
@@ -72,7 +72,7 @@ fn every_screen_in_colour_and_in_mono() {
 fn mono_and_no_color_emit_no_colour_at_any_size() {
     each(|name, snapshot, view| {
         for size in SIZES {
-            let buffer = drawn(snapshot, view, &MONO, size);
+            let buffer = drawn(snapshot, view, MONO, size);
             let coloured = buffer
                 .content
                 .iter()
@@ -86,7 +86,7 @@ fn mono_and_no_color_emit_no_colour_at_any_size() {
 fn the_stop_state_is_on_every_screen_at_every_size_that_has_room_for_it() {
     each(|name, snapshot, view| {
         for size in SIZES.into_iter().filter(|size| size.0 >= 39) {
-            let text = text_of(&drawn(snapshot, view, &ASCII, size)).to_lowercase();
+            let text = text_of(&drawn(snapshot, view, ASCII, size)).to_lowercase();
             let words = ["not stopped", "stop state not known", "# stop", "x stop not confirmed"];
             assert!(words.iter().any(|word| text.contains(word)), "{name} {size:?}\n{text}");
         }
@@ -112,6 +112,6 @@ fn every_dialog_has_its_picture() {
     for (name, snapshot, way) in ways {
         let mut app = app(Screen::Trial);
         press(&mut app, snapshot, way);
-        insta::assert_snapshot!(format!("dialog_{name}"), at_all_sizes(snapshot, &app.view, &COLOUR));
+        insta::assert_snapshot!(format!("dialog_{name}"), at_all_sizes(snapshot, &app.view, COLOUR));
     }
 }

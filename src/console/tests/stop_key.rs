@@ -131,7 +131,7 @@ fn live_through(happenings: &[Happening], phase: TrialPhase) -> Vec<Reaction> {
                 reactions.extend(app.on_snapshot(&snapshot));
             }
         }
-        drawn(&snapshot, &app.view, if app.view.mouse { &ASCII } else { &COLOUR }, app.view.size);
+        drawn(&snapshot, &app.view, if app.view.mouse { ASCII } else { COLOUR }, app.view.size);
     }
     reactions
 }
@@ -177,7 +177,7 @@ proptest! {
     fn every_size_is_drawn(columns in 0_u16..=200, rows in 0_u16..=80, situation in proptest::sample::select(Situation::ALL.to_vec())) {
         for screen in Screen::ALL {
             let view = ViewState { screen, ..ViewState::default() };
-            drawn(&fixture_of(situation), &view, &ASCII, (columns, rows));
+            drawn(&fixture_of(situation), &view, ASCII, (columns, rows));
         }
     }
 }

@@ -102,7 +102,7 @@ impl DotGrid {
     }
 
     /// Draws the grid into an area.
-    pub(in crate::console) fn draw(&self, look: &Look, area: Rect, buffer: &mut Buffer) {
+    pub(in crate::console) fn draw(&self, look: Look, area: Rect, buffer: &mut Buffer) {
         let cells = self.cells.iter().zip(&self.glyphs).enumerate();
         for (index, ((dots, role), glyph)) in cells {
             let (letter, role) = match glyph {
@@ -156,7 +156,7 @@ mod tests {
 
     fn drawn(grid: &DotGrid, area: Rect, ascii: bool) -> Vec<String> {
         let mut buffer = Buffer::empty(area);
-        grid.draw(&Look { theme: ThemeName::Mono, ascii }, area, &mut buffer);
+        grid.draw(Look { theme: ThemeName::Mono, ascii }, area, &mut buffer);
         let row = |y| (0..area.width).map(|x| buffer[(x, y)].symbol().to_owned()).collect::<String>();
         (0..area.height).map(row).collect()
     }
@@ -194,7 +194,7 @@ mod tests {
             grid.column(usize::from(width), '/', Role::Stale);
             grid.rule(usize::from(height), '-', Role::Threshold);
             let mut buffer = Buffer::empty(Rect::new(0, 0, 10, 4));
-            grid.draw(&Look { theme: ThemeName::Mono, ascii: false }, area, &mut buffer);
+            grid.draw(Look { theme: ThemeName::Mono, ascii: false }, area, &mut buffer);
             prop_assert_eq!(buffer[(0, 0)].symbol(), " ");
         }
     }

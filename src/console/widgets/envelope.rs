@@ -71,7 +71,7 @@ impl Envelope {
 
     /// The column of a moment, from 0 at the left; negative where it is older than the plot.
     pub(in crate::console) fn index(&self, stamp: Stamp) -> i64 {
-        self.columns.len() as i64 - 1 - (self.end - column_of(stamp, self.width))
+        signed(self.columns.len()) - 1 - (self.end - column_of(stamp, self.width))
     }
 
     /// The largest magnitude of all series.
@@ -116,13 +116,17 @@ impl Envelope {
     }
 
     fn mark_gap(&mut self, from: i64, to: i64) {
-        let last = self.gaps.len() as i64;
+        let last = signed(self.gaps.len());
         for column in (from + 1).max(0)..to.min(last) {
             if let Some(gap) = usize::try_from(column).ok().and_then(|column| self.gaps.get_mut(column)) {
                 *gap = true;
             }
         }
     }
+}
+
+fn signed(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
 }
 
 /// Columns are fixed to the epoch and not to the right edge, so that the plot does not shimmer as time goes on.

@@ -47,7 +47,7 @@ pub(in crate::console) fn round_scale(largest: f64) -> f64 {
 
 impl Strip<'_> {
     /// Draws the strip into an area.
-    pub(in crate::console) fn draw(&self, look: &Look, area: Rect, buffer: &mut Buffer) {
+    pub(in crate::console) fn draw(&self, look: Look, area: Rect, buffer: &mut Buffer) {
         let label = Rect { width: LABEL_WIDTH.min(area.width), ..area };
         fill(buffer, label, self.label(look));
         let plot =
@@ -59,7 +59,7 @@ impl Strip<'_> {
         grid.draw(look, plot, buffer);
     }
 
-    fn label(&self, look: &Look) -> Vec<Line<'static>> {
+    fn label(&self, look: Look) -> Vec<Line<'static>> {
         let name = span(look, Role::Title, format!("{:<4}", self.name));
         let value = match &self.value {
             Ok(value) => span(look, Role::Text, format!("{value:>7.2}")),
@@ -76,7 +76,7 @@ impl Strip<'_> {
         lines
     }
 
-    fn plot(&self, look: &Look, grid: &mut DotGrid) {
+    fn plot(&self, look: Look, grid: &mut DotGrid) {
         let glyphs = look.glyphs();
         let height = grid.height();
         for (column, extents) in self.envelope.columns.iter().enumerate() {
@@ -136,7 +136,7 @@ mod tests {
         };
         let area = Rect::new(0, 0, LABEL_WIDTH + 10, 4);
         let mut buffer = Buffer::empty(area);
-        strip.draw(&Look { theme: ThemeName::Mono, ascii: true }, area, &mut buffer);
+        strip.draw(Look { theme: ThemeName::Mono, ascii: true }, area, &mut buffer);
         let row = |y| (0..area.width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
         (0..area.height).map(row).collect::<Vec<_>>().join("\n")
     }

@@ -23,17 +23,17 @@ pub(in crate::console) fn fill<'a>(buffer: &mut Buffer, area: Rect, lines: impl 
 }
 
 /// A piece of text in a role.
-pub(in crate::console) fn span<'a>(look: &Look, role: Role, text: impl Into<std::borrow::Cow<'a, str>>) -> Span<'a> {
+pub(in crate::console) fn span<'a>(look: Look, role: Role, text: impl Into<std::borrow::Cow<'a, str>>) -> Span<'a> {
     Span::styled(text, look.style(role))
 }
 
 /// A whole line in a role.
-pub(in crate::console) fn line<'a>(look: &Look, role: Role, text: impl Into<std::borrow::Cow<'a, str>>) -> Line<'a> {
+pub(in crate::console) fn line<'a>(look: Look, role: Role, text: impl Into<std::borrow::Cow<'a, str>>) -> Line<'a> {
     Line::from(span(look, role, text))
 }
 
 /// A heading, cut off by the end of the area.
-pub(in crate::console) fn title<'a>(look: &Look, text: impl Into<std::borrow::Cow<'a, str>>) -> Line<'a> {
+pub(in crate::console) fn title<'a>(look: Look, text: impl Into<std::borrow::Cow<'a, str>>) -> Line<'a> {
     line(look, Role::Title, text)
 }
 
@@ -102,7 +102,7 @@ pub(in crate::console) fn bytes(count: u64) -> String {
 }
 
 /// A bar of `width` columns that is full to a share from 0 to 1.
-pub(in crate::console) fn bar(look: &Look, share: f64, width: usize) -> String {
+pub(in crate::console) fn bar(look: Look, share: f64, width: usize) -> String {
     let glyphs = look.glyphs();
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     // Only counts of columns are rounded here, which are small and not negative.
@@ -155,7 +155,7 @@ mod tests {
         #[test]
         fn a_bar_has_its_width(share in proptest::num::f64::ANY, width in 0_usize..50) {
             let look = Look { theme: crate::console::ThemeName::Mono, ascii: true };
-            prop_assert_eq!(bar(&look, share, width).chars().count(), width);
+            prop_assert_eq!(bar(look, share, width).chars().count(), width);
         }
     }
 }
