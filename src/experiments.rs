@@ -1,6 +1,33 @@
 //! The thesis' tables and figures, and valet's own, each from a command that anyone can run.
 //!
-//! Nothing here is used while a trial runs.
+//! [`EXPERIMENTS`] is the list: an experiment is a name and a function from a seed to [`Findings`]; writing them down as
+//! lines, CSV files, plots and a page is done once for all. Nothing here is used while a trial runs.
 
+pub mod chapter_5;
 pub mod detectors;
+pub mod figure_4_5;
+pub mod findings;
+pub mod synthetic;
+pub mod table_4_1;
 pub mod torture;
+
+pub use findings::{Drawing, ExperimentError, Findings, Row};
+
+/// One experiment that `valet reproduce` can run.
+#[derive(Clone, Copy, Debug)]
+pub struct Experiment {
+    /// What is typed to run it.
+    pub name: &'static str,
+    /// Its heading on the page.
+    pub title: &'static str,
+    /// Runs it with a seed.
+    pub run: fn(u64) -> Result<Findings, ExperimentError>,
+}
+
+/// All experiments, in the order in which `all` runs them.
+pub const EXPERIMENTS: &[Experiment] = &[
+    Experiment { name: "table-4.1", title: "Table 4.1: optimisers on synthetic paths", run: table_4_1::run },
+    Experiment { name: "figure-4.5", title: "Figure 4.5: examples of the iterations", run: figure_4_5::run },
+    Experiment { name: "figures-5", title: "Figures 5.2 to 5.7: four scenes", run: chapter_5::figures },
+    Experiment { name: "table-5", title: "Chapter 5 on 200 scenes", run: chapter_5::table },
+];
