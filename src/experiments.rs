@@ -9,6 +9,7 @@ pub mod figure_4_5;
 pub mod findings;
 pub mod synthetic;
 pub mod table_4_1;
+pub mod table_4_2;
 pub mod torture;
 
 pub use findings::{Drawing, ExperimentError, Findings, Row};
@@ -28,6 +29,9 @@ pub struct Experiment {
 pub const EXPERIMENTS: &[Experiment] = &[
     Experiment { name: "table-4.1", title: "Table 4.1: optimisers on synthetic paths", run: table_4_1::run },
     Experiment { name: "figure-4.5", title: "Figure 4.5: examples of the iterations", run: figure_4_5::run },
+    Experiment { name: "table-4.2", title: "Table 4.2: twelve simulated people", run: table_4_2::run },
+    Experiment { name: "figure-4.6", title: "Figure 4.6: energy by iteration", run: table_4_2::energy_by_iteration },
+    Experiment { name: "figure-4.7", title: "Figure 4.7: resistances by iteration", run: table_4_2::contacts_by_iteration },
     Experiment { name: "figures-5", title: "Figures 5.2 to 5.7: four scenes", run: chapter_5::figures },
     Experiment { name: "table-5", title: "Chapter 5 on 200 scenes", run: chapter_5::table },
 ];

@@ -9,6 +9,7 @@ pub mod faults;
 pub mod garment;
 pub mod person;
 mod random;
+pub mod rig;
 pub mod world;
 pub mod wrench;
 

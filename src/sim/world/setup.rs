@@ -115,7 +115,7 @@ impl WorldSetup {
     }
 
     /// The path that the person likes best in this experiment, metres in `base`.
-    pub(super) fn preferred_path(&self, side: Side) -> Vec<Point> {
+    pub(in crate::sim) fn preferred_path(&self, side: Side) -> Vec<Point> {
         let mut arm = self.person.arm(side);
         if self.experiment == 0 {
             arm.preferred_offset_metres =

@@ -1,0 +1,10 @@
+//! Table 4.2 of the thesis: twelve people, five experiments each, on the shipped cohort of simulated people.
+//!
+//! The cohort was calibrated on the shipped simulator so that its trials mirror the table; fresh seeds show how well. It
+//! says nothing about other people.
+
+mod cohort;
+mod dresser;
+
+pub use cohort::{CohortError, EXPERIMENTS, Participant, ThesisRow, cohort};
+pub use dresser::{DressingError, DressingRecord, PLANNING_SECONDS, PassRecord, dress};
