@@ -26,21 +26,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let only: u32 = arguments.next().map_or(Ok(0), |text| text.parse())?;
     let rounds: u64 = arguments.next().map_or(Ok(200), |text| text.parse())?;
     let people = cohort()?;
-    let results: Vec<String> = people
+    people
         .into_par_iter()
         .filter(|participant| only == 0 || participant.number == only)
         .map(|participant| search(participant, rounds))
-        .collect::<Result<_, String>>()?;
-    let mut out = std::io::stdout().lock();
-    for text in results {
-        writeln!(out, "{text}")?;
-    }
+        .try_for_each(|found| {
+            found.and_then(|text| writeln!(std::io::stdout().lock(), "{text}").map_err(|error| error.to_string()))
+        })?;
     Ok(())
 }
 
+/// The part of a profile that is searched.
+#[derive(serde::Deserialize)]
+struct ProfileFile {
+    simulated: SimulatedPerson,
+}
+
+/// The person of the profile as it is on disk now, so that a search can go on without a new build.
+fn on_disk(number: u32) -> Result<SimulatedPerson, String> {
+    let path = format!("profiles/participant-{number:02}.toml");
+    let text = std::fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
+    toml::from_str::<ProfileFile>(&text).map(|file| file.simulated).map_err(|error| format!("{path}: {error}"))
+}
+
 fn search(mut participant: Participant, rounds: u64) -> Result<String, String> {
+    participant.person = on_disk(participant.number)?;
     let mut random = ChaCha8Rng::seed_from_u64(u64::from(participant.number));
-    let mut best = (judge(&participant, 200)?, participant.person.clone());
+    let mut best = (judge(&participant, 120)?, participant.person.clone());
     for round in 0..rounds {
         let spread = if round % 3 == 0 { 0.35 } else { 0.12 };
         participant.person = varied(&best.1, &mut random, spread);
@@ -48,15 +60,15 @@ fn search(mut participant: Participant, rounds: u64) -> Result<String, String> {
             continue;
         }
         // A cheap look first; only what beats the best there is looked at closely.
-        if judge(&participant, 40)? < best.0 * 1.5 + 0.05 {
-            let closely = judge(&participant, 200)?;
+        if judge(&participant, 30)? < best.0 * 1.3 + 0.1 {
+            let closely = judge(&participant, 120)?;
             if closely < best.0 {
                 best = (closely, participant.person.clone());
             }
         }
     }
     participant.person = best.1;
-    let means = means(&participant, 400)?;
+    let means = means(&participant, 120)?;
     let text = toml::to_string(&participant.person.right).map_err(|error| error.to_string())?;
     Ok(format!(
         "## {} cost {:.3}: iterations {:.2} ({:.1}), energy {:.1} ({:.1}), seconds {:.0} ({:.0}), resistances {:.1}\n{text}",

@@ -5,6 +5,10 @@
 
 mod cohort;
 mod dresser;
+mod present;
+mod run;
 
 pub use cohort::{CohortError, EXPERIMENTS, Participant, ThesisRow, cohort};
 pub use dresser::{DressingError, DressingRecord, PLANNING_SECONDS, PassRecord, dress};
+pub use present::{contacts_by_iteration, energy_by_iteration, run};
+pub use run::{CohortRow, SERIES, TableError, experiments, table};

@@ -21,8 +21,8 @@ const LEAST_SECONDS: f64 = 3.0;
 /// Resistance is not listened to for this long after a motion has begun, in seconds.
 const SETTLING: f64 = 0.3;
 /// What the thesis' robot took to plan and start a new motion after a resistance, in seconds. Its table 4.2 grows by
-/// about 11 s a resistance, of which about 1.5 s are halt and correction.
-pub const PLANNING_SECONDS: f64 = 9.5;
+/// about 11 s a resistance; the rest of that is the halt, the correction and the slower way after it.
+pub const PLANNING_SECONDS: f64 = 7.5;
 
 /// Why an experiment could not be run.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -64,6 +64,12 @@ impl DressingRecord {
     #[must_use]
     pub fn iterations(&self) -> usize {
         self.passes.len()
+    }
+
+    /// True where the last pass met no resistance.
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        self.passes.last().is_some_and(|pass| pass.summary.contacts == 0)
     }
 
     /// Sum of detected resistance over all passes in newtons (the thesis' energy).

@@ -6,8 +6,8 @@ use super::PersonError;
 use crate::geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// Force of a stiffening arm at the most, in newtons (reduced model, `docs/results.md`, "Simulated people").
-const REFLEX_CEILING: f64 = 15.0;
+/// Force of a stiffening arm at the most, in newtons: what a startled, seated person adds before the robot has halted.
+const REFLEX_CEILING: f64 = 7.0;
 /// Time in which a stiffened arm softens again once nothing pulls, in seconds.
 const SOFTENING: f64 = 0.15;
 /// A person notices within this time that the robot has stopped, in seconds.
