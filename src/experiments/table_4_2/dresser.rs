@@ -22,7 +22,7 @@ const LEAST_SECONDS: f64 = 3.0;
 const SETTLING: f64 = 0.3;
 /// What the thesis' robot took to plan and start a new motion after a resistance, in seconds. Its table 4.2 grows by
 /// about 11 s a resistance; the rest of that is the halt, the correction and the slower way after it.
-pub const PLANNING_SECONDS: f64 = 7.5;
+pub const PLANNING_SECONDS: f64 = 6.0;
 
 /// Why an experiment could not be run.
 #[derive(Clone, Debug, PartialEq, Error)]
