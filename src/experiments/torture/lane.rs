@@ -26,8 +26,8 @@ struct Silence {
     to_seconds: f64,
 }
 
-/// How bad the lane is.
-#[derive(Clone, Debug)]
+/// How bad the lane is; by default it is good.
+#[derive(Clone, Debug, Default)]
 pub(super) struct LanePlan {
     lost: f64,
     late: f64,

@@ -37,7 +37,9 @@ impl TrialPlan {
     pub(super) fn from_seed(seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(PLAN_STREAM);
-        let seconds = random.random_range(8.0..45.0);
+        // Two in five trials are calm, and long enough for passes of the garment; the others are rough and short.
+        let calm = random.random_bool(0.4);
+        let seconds = if calm { random.random_range(40.0..120.0) } else { random.random_range(8.0..45.0) };
         let mut setup = Setup { seed, ..Setup::default() };
         // Without a person's movement space there are chapter 4's strategy and none other.
         setup.settings.strategy = StrategyKind::Force;
@@ -49,9 +51,9 @@ impl TrialPlan {
         if random.random_bool(0.3) {
             world.faults.faults.extend(FaultPlan::from_seed(seed ^ 0x5EED, seconds).faults);
         }
-        world.wrench.noise_newtons = random.random_range(0.05..2.0);
-        let lane = LanePlan::draw(&mut random, seconds);
-        let errs = if random.random_bool(0.5) { random.random_range(0.0..0.2) } else { 0.0 };
+        world.wrench.noise_newtons = random.random_range(0.05..if calm { 0.4 } else { 2.0 });
+        let lane = if calm { LanePlan::default() } else { LanePlan::draw(&mut random, seconds) };
+        let errs = if !calm && random.random_bool(0.5) { random.random_range(0.0..0.2) } else { 0.0 };
         let jump = random.random_bool(0.2).then(|| ClockJump::draw(&mut random, seconds));
         Self { setup, world, lane, beats: beats(seconds), errs, jump }
     }
