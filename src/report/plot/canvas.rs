@@ -45,6 +45,7 @@ impl Weight {
 pub(super) struct Canvas<'a, B: DrawingBackend> {
     area: &'a DrawingArea<B, Shift>,
     scale: f64,
+    by_segment: bool,
 }
 
 /// A colour with an opacity.
@@ -55,7 +56,13 @@ pub(super) fn ink(colour: Colour, strength: f64) -> RGBAColor {
 
 impl<'a, B: DrawingBackend> Canvas<'a, B> {
     pub(super) const fn new(area: &'a DrawingArea<B, Shift>, scale: f64) -> Self {
-        Self { area, scale }
+        Self { area, scale, by_segment: false }
+    }
+
+    /// Draws each segment of a line by itself: the bitmap backend's joins shoot out of sharp corners.
+    pub(super) const fn by_segment(mut self) -> Self {
+        self.by_segment = true;
+        self
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "a place on a sheet of at most some ten thousand pixels")]
@@ -73,7 +80,13 @@ impl<'a, B: DrawingBackend> Canvas<'a, B> {
         if points.len() < 2 {
             return Ok(());
         }
-        self.area.draw(&PathElement::new(points, self.stroke(ink, width))).map_err(PlotError::drawing)
+        let style = self.stroke(ink, width);
+        if !self.by_segment {
+            return self.area.draw(&PathElement::new(points, style)).map_err(PlotError::drawing);
+        }
+        points.iter().zip(points.iter().skip(1)).try_for_each(|(from, to)| {
+            self.area.draw(&PathElement::new(vec![*from, *to], style)).map_err(PlotError::drawing)
+        })
     }
 
     /// Draws a polyline with dashes; the pattern runs on over its corners.

@@ -69,7 +69,7 @@ impl Figure {
         let units = size.map(|length| pixels(length * SVG_UNITS));
         {
             let backend = SVGBackend::with_string(&mut text, (units[0], units[1]));
-            self.draw_on(backend, SVG_UNITS, legend_width)?;
+            self.draw_on(backend, SVG_UNITS, legend_width, false)?;
         }
         // The sheet is drawn in sub-units; its size on a page is in points.
         let drawn = format!("width=\"{}\" height=\"{}\" viewBox", units[0], units[1]);
@@ -87,7 +87,7 @@ impl Figure {
         let mut buffer = vec![255; drawn[0] as usize * drawn[1] as usize * 3];
         {
             let backend = BitMapBackend::with_buffer(&mut buffer, (drawn[0], drawn[1]));
-            self.draw_on(backend, f64::from(PNG_DRAWN), legend_width)?;
+            self.draw_on(backend, f64::from(PNG_DRAWN), legend_width, true)?;
         }
         encoded(&smoothed(&buffer, drawn[0] as usize), drawn.map(|length| length / PNG_KEPT))
     }
@@ -117,10 +117,17 @@ impl Figure {
         Ok((legend_width, draw::size_of(self, legend_width)))
     }
 
-    fn draw_on<B: DrawingBackend>(&self, backend: B, scale: f64, legend_width: f64) -> Result<(), PlotError> {
+    fn draw_on<B: DrawingBackend>(
+        &self,
+        backend: B,
+        scale: f64,
+        legend_width: f64,
+        bitmap: bool,
+    ) -> Result<(), PlotError> {
         let area = backend.into_drawing_area();
         area.fill(&WHITE).map_err(PlotError::drawing)?;
-        draw::figure(self, legend_width, &Canvas::new(&area, scale))?;
+        let canvas = Canvas::new(&area, scale);
+        draw::figure(self, legend_width, &if bitmap { canvas.by_segment() } else { canvas })?;
         area.present().map_err(PlotError::drawing)
     }
 }
