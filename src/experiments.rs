@@ -31,7 +31,11 @@ pub const EXPERIMENTS: &[Experiment] = &[
     Experiment { name: "figure-4.5", title: "Figure 4.5: examples of the iterations", run: figure_4_5::run },
     Experiment { name: "table-4.2", title: "Table 4.2: twelve simulated people", run: table_4_2::run },
     Experiment { name: "figure-4.6", title: "Figure 4.6: energy by iteration", run: table_4_2::energy_by_iteration },
-    Experiment { name: "figure-4.7", title: "Figure 4.7: resistances by iteration", run: table_4_2::contacts_by_iteration },
+    Experiment {
+        name: "figure-4.7",
+        title: "Figure 4.7: resistances by iteration",
+        run: table_4_2::contacts_by_iteration,
+    },
     Experiment { name: "figures-5", title: "Figures 5.2 to 5.7: four scenes", run: chapter_5::figures },
     Experiment { name: "table-5", title: "Chapter 5 on 200 scenes", run: chapter_5::table },
     Experiment { name: "detectors", title: "Detectors of resistance on measured pulls", run: detectors::run },

@@ -65,7 +65,7 @@ pub struct DetectorRow {
 }
 
 /// Pulls of each kind that `valet reproduce detectors` makes.
-const PUBLISHED_RUNS: u32 = 300;
+const PUBLISHED_RUNS: u32 = 1000;
 
 /// The experiment as `valet reproduce detectors` runs it.
 ///

@@ -82,7 +82,9 @@ fn by_iteration(
     findings.drawings.push(Drawing {
         stem: format!("figure-{number}"),
         figure: Figure::single(plot.with(Layer::boxes(name, 0.5, boxes))),
-        caption: format!("{label} by iteration, 60 experiments of twelve simulated people; only those still under way count"),
+        caption: format!(
+            "{label} by iteration, 60 experiments of twelve simulated people; only those still under way count"
+        ),
     });
     Ok(findings)
 }

@@ -30,8 +30,9 @@ const ONE_MOTION: Duration = Duration::from_millis(200);
 /// How far a first setpoint may be from where the arm is, in radians on a joint.
 const FIRST_STEP: f64 = 0.3;
 
-/// A joint at its stop may be reported beyond its range by a step of its encoder (2 pi / 16384 rad), and is then held there.
-const RANGE_TOLERANCE: f64 = 4e-4;
+/// Between two planned postures a joint's spline may swing past its limit by this much, in radians: a tenth of a degree
+/// stands against the robot's own control error of half a degree.
+const RANGE_TOLERANCE: f64 = 1.5e-3;
 
 /// What may never be broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
