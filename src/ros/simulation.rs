@@ -9,6 +9,7 @@ use super::link::advertise;
 use super::message::{baxter_core_msgs, sensor_msgs, std_msgs, tf2_msgs};
 use super::monitor::now;
 use super::node::Node;
+use super::watch::Watch;
 use crate::assembly::{RobotState, SwitchRequest};
 use crate::body::{BodyPose, PerSide, Side};
 use crate::kinematics::JointVector;
@@ -112,10 +113,10 @@ impl SimNode {
     /// Advertises a Baxter's topics and listens to its commands.
     ///
     /// # Errors
-    /// Where the master does not register something.
-    pub fn new(_node: &Node, robot: Box<dyn SimulatedRobot>) -> Result<Self, RosError> {
+    /// Where the master does not register something, or the system has no thread to give.
+    pub fn new(node: &Node, robot: Box<dyn SimulatedRobot>) -> Result<Self, RosError> {
         let (sender, commands) = bounded(COMMANDS);
-        Ok(Self {
+        let this = Self {
             topics: Topics::advertise()?,
             commands,
             robot,
@@ -124,7 +125,12 @@ impl SimNode {
             seen: Arc::default(),
             ended: Arc::default(),
             _subscribers: listen(&sender)?,
-        })
+        };
+        // Only registers again with a master that came back: what happens to the graph is nothing to the robot.
+        Watch::new(node.master(), &node.name(), Arc::new(|_| ()), Vec::new())
+            .start(Arc::clone(&this.ended))
+            .map_err(|error| RosError::thread("the watch over the ROS master", error))?;
+        Ok(this)
     }
 
     /// Adds a depth camera, in a thread of its own, at 30 pictures a second.
