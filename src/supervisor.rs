@@ -248,7 +248,7 @@ impl Supervisor {
             LinkEvent::MasterLost => {
                 self.hold(now, "the ROS master does not answer: start roscore again, then continue")
             }
-            LinkEvent::MasterBack => self.log(now, Level::Information, "link", "the ROS master is back".into()),
+            LinkEvent::MasterBack => self.log(now, Level::Information, "link", "the ROS master answers".into()),
             LinkEvent::ForeignPublisher { topic, node } => {
                 self.protection.watchdogs_mut().foreign_publisher(topic, node);
                 self.hold(now, &format!("{node} publishes on {topic}: end it, then continue"));

@@ -27,7 +27,7 @@ impl<F: FnMut() + Send> StopPort for F {
 
 #[derive(Debug)]
 struct Flags {
-    stopped: AtomicBool,
+    stopped: Arc<AtomicBool>,
     confirmed: AtomicBool,
     ended: AtomicBool,
     /// Nanoseconds from the engine's start to the first stop message after the latest request; 0 before one was sent.
@@ -56,6 +56,12 @@ impl StopLatch {
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.flags.stopped.load(Ordering::SeqCst)
+    }
+
+    /// The flag itself, for guards that look at it before every command.
+    #[must_use]
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.flags.stopped)
     }
 
     /// The robot says that it is stopped: the message need not be repeated any more.
@@ -94,7 +100,7 @@ impl StopThread {
     /// Where the system has no thread to give.
     pub fn start(port: impl StopPort + 'static) -> std::io::Result<Self> {
         let flags = Arc::new(Flags {
-            stopped: AtomicBool::new(false),
+            stopped: Arc::default(),
             confirmed: AtomicBool::new(false),
             ended: AtomicBool::new(false),
             sent_nanoseconds: AtomicU64::new(0),

@@ -1,0 +1,227 @@
+//! A node at work: link to the robot, supervisor, stop thread and recorder, put together for a screen or for lines.
+//!
+//! Only glue: each part knows none of the others.
+
+use super::exit::Failure;
+use super::sim::ros_failure;
+use crate::assembly::SwitchRequest;
+use crate::body::{PerSide, Side};
+use crate::command::{Command, Origin};
+use crate::config::LoadedProfile;
+use crate::engine::stop::StopThread;
+use crate::engine::{Engine, Inbox, Outlet, SharedSnapshot};
+use crate::kinematics::{JointVector, RobotModel};
+use crate::record::{Header, Recorder, RecordingSettings};
+use crate::robot::{GuardSettings, GuardedLimb, GuardedPair};
+use crate::ros::{Commander, LinkSettings, Node, RobotLink, RosLimb, Showing, TopicReport, leave};
+use crate::snapshot::{Freshness, RecorderView, Shared, Snapshot, TopicHealth};
+use crate::supervisor::{Effect, Input, LinkEvent, Setup, Supervisor};
+use crate::time::Stamp;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// A topic that has been silent for longer is shown as stale; what moves the robot has limits of its own.
+const TOPIC_DEADLINE_SECONDS: f64 = 0.5;
+
+/// What a session is opened with.
+pub(super) struct Opening<'a> {
+    pub(super) setup: Setup,
+    pub(super) person: &'a LoadedProfile,
+    pub(super) record: Option<&'a Path>,
+    pub(super) is_dry_run: bool,
+}
+
+/// A node at work. Dropping it stops the supervisor and leaves the graph.
+pub(super) struct Session {
+    engine: Option<Engine>,
+    stop: Option<StopThread>,
+    link: Arc<RobotLink>,
+    recorder: Option<Arc<Recorder>>,
+    node: Node,
+}
+
+/// Carries effects to the robot through guards, shows snapshots to other nodes, records every step.
+struct RobotOutlet {
+    limbs: Option<GuardedPair<RosLimb>>,
+    commander: Option<Commander>,
+    showing: Showing,
+    recorder: Option<Arc<Recorder>>,
+}
+
+impl Outlet for RobotOutlet {
+    fn setpoint(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Result<(), String> {
+        // A dry run decides everything and commands nothing.
+        let Some(limbs) = self.limbs.as_mut() else { return Ok(()) };
+        limbs.command(now, side, joints).map_err(|error| error.to_string())
+    }
+
+    fn release(&mut self, _side: Side) {
+        // Sending nothing more is all: the robot holds by its own time-out.
+    }
+
+    fn switch(&mut self, request: SwitchRequest) {
+        if let Some(commander) = &self.commander {
+            // What the transport does not take shows in the robot's state, which the supervisor waits for.
+            let _ = commander.switch(request);
+        }
+    }
+
+    fn show(&mut self, snapshot: &Snapshot) {
+        self.showing.show(snapshot);
+    }
+
+    fn record(&mut self, now: Stamp, input: &Input, effects: &[Effect]) {
+        if let (Input::Joints(sample), Some(limbs)) = (input, self.limbs.as_mut()) {
+            for (side, positions) in sample.positions.iter() {
+                limbs.observe(now, side, positions);
+            }
+        }
+        if let Some(recorder) = &self.recorder {
+            recorder.offer(now, input, effects);
+        }
+    }
+}
+
+impl Session {
+    /// Joins the graph and starts to supervise. Nothing moves before Enable and Start.
+    ///
+    /// # Errors
+    /// Where no master answers, a setting is not usable, or the recorder cannot write.
+    pub(super) fn open(opening: Opening<'_>) -> Result<Self, Failure> {
+        let model = RobotModel::baxter().map_err(Failure::configuration)?;
+        let limits = opening.setup.settings.motion.clone();
+        let recorder = opening.record.map(|folder| start_recorder(folder, &opening)).transpose()?.map(Arc::new);
+        let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
+        let node = Node::start("valet").map_err(ros_failure)?;
+        let inbox: Arc<OnceLock<Inbox>> = Arc::default();
+        let late = Arc::clone(&inbox);
+        let sink = Arc::new(move |input: Input| {
+            if let Some(inbox) = late.get() {
+                inbox.offer(input);
+            }
+        });
+        let link = RobotLink::connect(&node, LinkSettings { is_dry_run: opening.is_dry_run }, sink).map_err(ros_failure)?;
+        let publisher = link.stop_publisher();
+        let stop = StopThread::start(move || {
+            if let Some(publisher) = &publisher {
+                publisher.send();
+            }
+        })
+        .map_err(Failure::fault)?;
+        let latch = stop.latch();
+        let limbs = link.commander().map(|commander| {
+            let guarded = PerSide::from_fn(|side| {
+                let limb = RosLimb { commander: commander.clone(), side };
+                GuardedLimb::new(limb, model.arm(side).clone(), limits.clone(), GuardSettings::default(), latch.flag())
+            });
+            GuardedPair::new(guarded, model.clone(), limits.clone())
+        });
+        let outlet =
+            RobotOutlet { limbs, commander: link.commander(), showing: link.showing(), recorder: recorder.clone() };
+        let engine = Engine::start(supervisor, Box::new(outlet), latch).map_err(Failure::fault)?;
+        // Nobody else sets it: this cannot fail.
+        let _ = inbox.set(engine.inbox());
+        engine.inbox().offer(Input::Link(LinkEvent::MasterBack));
+        Ok(Self { engine: Some(engine), stop: Some(stop), link: Arc::new(link), recorder, node })
+    }
+
+    /// The stop, for keys and panics: sets the latch, never blocks.
+    pub(super) fn stopper(&self) -> Arc<dyn crate::console::StopHandle> {
+        let latch = self.stop.as_ref().map(StopThread::latch);
+        Arc::new(move || {
+            if let Some(latch) = &latch {
+                latch.stop();
+            }
+        })
+    }
+
+    /// Where commands go.
+    pub(super) fn asker(&self) -> impl FnMut(Command) -> Result<(), String> + use<> {
+        let inbox = self.engine.as_ref().map(Engine::inbox);
+        move |command| {
+            let inbox = inbox.as_ref().ok_or("the supervisor has ended")?;
+            inbox.offer(Input::Operator { command, origin: Origin::OperatorKey });
+            Ok(())
+        }
+    }
+
+    /// The engine, as long as the session is open.
+    pub(super) const fn engine(&self) -> Option<&Engine> {
+        self.engine.as_ref()
+    }
+
+    /// True until the node is told to end.
+    pub(super) fn is_running(&self) -> bool {
+        self.node.is_running()
+    }
+
+    /// Snapshots with what only the shell knows filled in: topics, recorder, master.
+    pub(super) fn viewer(&self) -> impl FnMut() -> Option<Snapshot> + use<> {
+        let shared = self.engine.as_ref().map(Engine::snapshots);
+        let (link, recorder) = (Arc::clone(&self.link), self.recorder.clone());
+        let uri = self.node.master().to_owned();
+        let mut last = None;
+        move || {
+            let newest = shared.as_ref().map(SharedSnapshot::newest)?;
+            if last == Some(newest.now) {
+                return None;
+            }
+            last = Some(newest.now);
+            let mut snapshot = Snapshot::clone(&newest);
+            snapshot.topics = Shared::new(link.topics().iter().map(|report| topic_health(snapshot.now, report)).collect());
+            snapshot.master.uri.clone_from(&uri);
+            snapshot.recorder = recorder.as_deref().map(recorder_view).unwrap_or_default();
+            Some(snapshot)
+        }
+    }
+
+    /// Ends the session in order: the arms are no longer commanded, the record is closed, the graph is left.
+    pub(super) fn close(mut self) -> Option<String> {
+        drop(self.engine.take());
+        drop(self.stop.take());
+        let path = self.recorder.take().and_then(Arc::into_inner).map(|recorder| recorder.finish().path.display().to_string());
+        leave((self.link, self.node));
+        path
+    }
+}
+
+fn start_recorder(folder: &Path, opening: &Opening<'_>) -> Result<Recorder, Failure> {
+    let began = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let began = u64::try_from(began.as_nanos()).unwrap_or_default();
+    let header = Header::of(&opening.setup, &opening.person.text, began).map_err(Failure::Fault)?;
+    Recorder::start(folder, &header, &RecordingSettings::default()).map_err(Failure::configuration)
+}
+
+/// A topic as the console shows it; the link tells ages, the screen wants moments.
+fn topic_health(now: Stamp, report: &TopicReport) -> TopicHealth {
+    let last = report.age_seconds.and_then(|age| Duration::try_from_secs_f64(age).ok()).map(|age| {
+        let before = Duration::from_nanos(now.nanoseconds()).saturating_sub(age);
+        Stamp::ZERO + before
+    });
+    TopicHealth {
+        name: report.topic.clone(),
+        kind: report.kind.clone(),
+        freshness: Freshness { last, deadline: TOPIC_DEADLINE_SECONDS },
+        rate: report.hertz,
+        expected: report.expected_hertz,
+        gap: 0.0,
+        jitter: 0.0,
+        stamp_lag: None,
+        drops: report.unusable,
+        publishers: report.publishers.clone(),
+        required: report.required,
+    }
+}
+
+fn recorder_view(recorder: &Recorder) -> RecorderView {
+    let status = recorder.status();
+    RecorderView {
+        on: true,
+        file: status.path.display().to_string(),
+        bytes: status.bytes,
+        drops: status.lost,
+        disk_free: status.free_bytes,
+        fault: status.failed.clone().unwrap_or_default(),
+    }
+}
