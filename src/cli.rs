@@ -18,6 +18,7 @@ mod profile;
 mod replay;
 mod report;
 mod reproduce;
+mod session;
 mod shell;
 mod sim;
 mod torture;

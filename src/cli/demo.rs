@@ -1,5 +1,7 @@
 //! `valet demo`: the whole thing with a simulated robot and person.
 
+mod wire;
+
 use super::exit::Failure;
 use super::output::Output;
 use crate::config::{LoadedProfile, Places, Settings};
@@ -44,6 +46,9 @@ pub(super) struct Arguments {
     /// Record the trial into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) record: Option<PathBuf>,
+    /// The port of the simulator's master; the program sets it for itself when it begins anew.
+    #[arg(long, hide = true)]
+    pub(super) port: Option<u16>,
 }
 
 impl Default for Arguments {
@@ -57,6 +62,7 @@ impl Default for Arguments {
             trials: 1,
             json: false,
             record: None,
+            port: None,
         }
     }
 }
@@ -65,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.headless && !arguments.ros {
         return run_in_virtual_time(arguments);
     }
-    Err(Failure::Fault("the demo over ROS is not built yet".into()))
+    wire::run(arguments)
 }
 
 fn run_in_virtual_time(arguments: &Arguments) -> Result<(), Failure> {
