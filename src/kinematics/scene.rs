@@ -143,6 +143,9 @@ fn limb(name: &str, from: &JointEstimate, to: &JointEstimate, radius: f64) -> Bo
     BodyPart { name: name.into(), shape: Capsule { start: from.position, end: to.position, radius } }
 }
 
+/// The most that doubt about the neck's place thickens the trunk, in metres (ours).
+const MOST_TRUNK_DOUBT: f64 = 0.015;
+
 /// The trunk is as deep as a chest from the armpits down, in metres below the neck: armpits lie 0.10 m below the shoulder
 /// (ANSUR II, acromion above armpit, 96 to 111 mm in the middle), and the shoulders 0.09 m below the neck. Above it narrows
 /// to the neck, and a gripper that brings the garment onto a shoulder must come by.
@@ -152,7 +155,10 @@ const ARMPIT_BELOW_NECK: f64 = 0.19;
 fn trunk_and_head(neck: &JointEstimate, build: &BodyBuild) -> [BodyPart; 2] {
     let extra = uncertainty(neck);
     let top = neck.position - Vector::z() * ARMPIT_BELOW_NECK;
-    let trunk = Capsule { start: top, end: top - Vector::z() * build.trunk_length, radius: build.trunk + extra };
+    // Whoever brings a garment onto a shoulder comes close to the trunk: full doubt would forbid the task. The force guard's
+    // tiers are halved there instead.
+    let trunk_extra = extra.min(MOST_TRUNK_DOUBT);
+    let trunk = Capsule { start: top, end: top - Vector::z() * build.trunk_length, radius: build.trunk + trunk_extra };
     let head = Capsule::sphere(neck.position + Vector::z() * build.head_height, build.head + extra);
     [
         BodyPart { name: "the person's trunk".into(), shape: trunk },
@@ -160,9 +166,9 @@ fn trunk_and_head(neck: &JointEstimate, build: &BodyBuild) -> [BodyPart; 2] {
     ]
 }
 
-/// Twice the standard deviation in the worst direction, metres; the trace bounds the largest eigenvalue from above.
+/// Twice the standard deviation in the worst direction, metres.
 fn uncertainty(joint: &JointEstimate) -> f64 {
-    2.0 * joint.covariance.trace().max(0.0).sqrt()
+    2.0 * joint.covariance.symmetric_eigenvalues().max().max(0.0).sqrt()
 }
 
 #[cfg(test)]
