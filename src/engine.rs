@@ -196,6 +196,10 @@ impl Worker {
             }
             let now = Instant::now();
             if now >= next_tick {
+                // What came in while a step took long is taken in first: it must not look older than it is.
+                while let Ok(waiting) = self.inputs.try_recv() {
+                    self.step(&waiting);
+                }
                 self.poll_latch();
                 self.report_losses();
                 self.step(&Input::Tick);

@@ -65,7 +65,7 @@ pub(super) fn choose_strategy(setup: &mut Setup, name: Option<&str>) -> Result<(
 pub(super) fn show(session: &Session, options: &ConsoleOptions) -> Result<ExitReason, Failure> {
     let mut viewer = session.viewer();
     let newest = move || -> Option<Snapshot> { viewer() };
-    crate::console::run(newest, session.asker(), session.stopper(), None, options).map_err(Failure::configuration)
+    crate::console::run(newest, session.asker(), &session.stopper(), None, options).map_err(Failure::configuration)
 }
 
 /// Says on leaving where the record is, and turns the reason into an exit code.

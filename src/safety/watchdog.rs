@@ -233,6 +233,11 @@ impl Watchdogs {
         }
     }
 
+    /// The beat pauses on purpose, as while a motion is planned with both arms at rest: the next one is not late.
+    pub const fn pause_beat(&mut self) {
+        self.last_tick = None;
+    }
+
     fn latch(&mut self, watch: Watch, cause: String) {
         self.latched.entry(watch).or_insert(cause);
     }

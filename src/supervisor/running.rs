@@ -28,7 +28,10 @@ impl Supervisor {
             self.hold(now, "the positions of the robot's joints are not known");
             return;
         };
-        match self.plan(&start, &targets, least_seconds) {
+        let planned = self.plan(&start, &targets, least_seconds);
+        // Planning takes longer than a beat, and both arms are at rest meanwhile.
+        self.protection.watchdogs_mut().pause_beat();
+        match planned {
             Ok(motion) => {
                 self.protection.motion_begins();
                 self.drive.start(motion);
