@@ -15,6 +15,9 @@ use crate::strategy::StrategyError;
 use crate::time::Stamp;
 use std::time::Duration;
 
+/// After a late beat the arms go on as if it had been on time, at most two beats at once: they never hurry to catch up.
+const LONGEST_SPAN: Duration = Duration::from_millis(20);
+
 impl Supervisor {
     /// Starts the motion that the trial asks for, where none is under way.
     pub(super) fn give_orders(&mut self, now: Stamp) {
@@ -79,7 +82,7 @@ impl Supervisor {
             self.drive.drop_motion();
             return;
         }
-        let arrival = self.drive.tick(span);
+        let arrival = self.drive.tick(span.min(LONGEST_SPAN));
         if let Some(last) = self.drive.last() {
             for (side, setpoint) in last.iter() {
                 self.effects.push(Effect::Setpoint { side, joints: setpoint.joints });

@@ -16,8 +16,9 @@ const BASE: &str = "base";
 const LONGEST_CHAIN: usize = 16;
 /// Frames that are remembered: a Baxter has about 60, each tracked user 15.
 const MOST_FRAMES: usize = 1000;
-/// Standard deviation of a tracked joint in metres: trackers of this kind err by some centimetres and do not say how much.
-const DEVIATION: f64 = 0.03;
+/// Standard deviation of a tracked joint in metres: trackers do not say how much they err. A seated person's joints scatter by
+/// about this much from frame to frame; a constant offset is for the calibration of the camera to take out (ours, to be measured).
+const DEVIATION: f64 = 0.015;
 /// The tracked joints that a sleeve passes.
 const TRACKED: [(Joint, &str); 3] = [(Joint::Hand, "hand"), (Joint::Elbow, "elbow"), (Joint::Shoulder, "shoulder")];
 
