@@ -33,7 +33,8 @@ impl<T: Clone> History<T> {
             return;
         }
         self.sealed.push_back(self.tail.drain(..).collect());
-        while self.len() >= self.capacity.saturating_add(CHUNK) {
+        // The newest chunk always stays: without it there would be no newest value.
+        while self.len() >= self.capacity.max(1).saturating_add(CHUNK) {
             self.sealed.pop_front();
         }
     }
