@@ -42,3 +42,4 @@ pub mod snapshot;
 pub mod strategy;
 pub mod supervisor;
 pub mod time;
+pub mod vision;

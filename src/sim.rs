@@ -5,6 +5,7 @@
 //! fault tests step it as fast as they can. Nothing here knows the node: it sees joint commands and the switch, as Baxter does.
 
 pub mod baxter;
+pub mod camera;
 pub mod faults;
 pub mod garment;
 pub mod person;
