@@ -6,6 +6,7 @@ use super::exit::Failure;
 use super::output::Output;
 use crate::assembly::SwitchRequest;
 use crate::body::Side;
+use crate::config::{LoadedProfile, Places, Profile, Settings};
 use crate::kinematics::JointVector;
 use crate::ros::master::{EmbeddedMaster, USUAL_PORT, relay_log};
 use crate::ros::simulation::{Senses, SimNode, SimulatedRobot};
@@ -78,7 +79,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         MasterChoice::Running => None,
         MasterChoice::Embedded => Some(embedded_master(arguments.port)?),
     };
-    let setup = WorldSetup { seed: arguments.seed, ..WorldSetup::default() };
+    let person = simulated_person(arguments)?;
+    let setup = WorldSetup {
+        seed: arguments.seed,
+        person: person.simulated.clone().unwrap_or_default(),
+        garment: person.garment(None).cloned().unwrap_or_default(),
+        ..WorldSetup::default()
+    };
     let world = World::new(&setup).map_err(Failure::configuration)?;
     let ended = ending_signals()?;
     let node = Node::start("simulated_baxter").map_err(ros_failure)?;
@@ -93,6 +100,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(master);
     // A thread that still waits for a master that hangs must not keep the process.
     std::process::exit(0);
+}
+
+/// The profile that is named, or the one that settings name.
+fn simulated_person(arguments: &Arguments) -> Result<Profile, Failure> {
+    let places = Places::of_this_machine();
+    let settings = Settings::find(None, &places).map_err(Failure::configuration)?;
+    let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
+    LoadedProfile::find(name, &places).map(|person| person.profile).map_err(Failure::configuration)
 }
 
 /// Starts the embedded master; a process whose environment points elsewhere is started anew in its place.
