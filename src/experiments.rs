@@ -11,6 +11,7 @@ pub mod synthetic;
 pub mod table_4_1;
 pub mod table_4_2;
 pub mod torture;
+pub mod whole_arm;
 
 pub use findings::{Drawing, ExperimentError, Findings, Row};
 
@@ -38,5 +39,6 @@ pub const EXPERIMENTS: &[Experiment] = &[
     },
     Experiment { name: "figures-5", title: "Figures 5.2 to 5.7: four scenes", run: chapter_5::figures },
     Experiment { name: "table-5", title: "Chapter 5 on 200 scenes", run: chapter_5::table },
+    Experiment { name: "whole-arm", title: "One mixture for the whole arm", run: whole_arm::run },
     Experiment { name: "detectors", title: "Detectors of resistance on measured pulls", run: detectors::run },
 ];

@@ -107,6 +107,11 @@ pub trait Strategy: Send + fmt::Debug {
     /// is use it; for others it changes nothing.
     fn settled(&mut self, _residual: &Vector) {}
 
+    /// Whether [`settled`](Self::settled) teaches this strategy anything: a reading costs a probe.
+    fn learns_from_residuals(&self) -> bool {
+        false
+    }
+
     /// The goal was reached.
     fn arrived(&mut self);
 

@@ -3,7 +3,7 @@
 
 use super::figure_4_5::flat;
 use super::findings::{Drawing, ExperimentError, Findings, Row};
-use super::synthetic::{Scene, displacement};
+use super::synthetic::{Scene, seed_of};
 use crate::geometry::Point;
 use crate::modelling::stick::{Space, StickFit};
 use crate::planning::criteria::{Reach, comfort};
@@ -168,13 +168,13 @@ fn run_one(contestant: Contestant, scene: &Scene, seed: u64) -> Result<Outcome, 
     // Chapter 3 does not learn: its path is judged as it is.
     if contestant != Contestant::Chapter3 {
         let probing = Probing { step: STEP, threshold: THRESHOLD };
-        let summaries = rehearse::run(strategy.as_mut(), &probing, |point| displacement(point, &scene.reference))?;
+        let summaries = rehearse::run(strategy.as_mut(), &probing, |point| scene.reference.displacement(point))?;
         iterations = summaries.len() as f64;
         contacts = summaries.iter().map(|summary| f64::from(summary.contacts)).sum();
     }
     let reach = Reach::new(scene.space.clone(), &scene.initial, StickFit::new(Space::Planar));
     let reached = reach.along(strategy.path(), SPACING);
-    let comfort = comfort(strategy.path(), &scene.reference, THRESHOLD, SPACING);
+    let comfort = comfort(strategy.path(), scene.reference.points(), THRESHOLD, SPACING);
     Ok(Outcome {
         path: strategy.path().to_vec(),
         reach: reached.score,
@@ -195,8 +195,8 @@ pub fn table(seed: u64) -> Result<Findings, ExperimentError> {
     let mut findings = Findings::default();
     for contestant in CONTESTANTS {
         let runs = (0..SCENES).into_par_iter().map(|index| {
-            let scene = Scene::any(DEVIATION, seed.wrapping_add(index))?;
-            run_one(contestant, &scene, seed.wrapping_add(index))
+            let scene = Scene::any(DEVIATION, seed_of(seed, index))?;
+            run_one(contestant, &scene, seed_of(seed, index))
         });
         findings.rows.push(row(contestant, &runs.collect::<Result<Vec<_>, _>>()?));
     }
@@ -278,10 +278,10 @@ pub fn figures(seed: u64) -> Result<Findings, ExperimentError> {
     let mut panels = Vec::new();
     for (index, components) in FOUR.into_iter().enumerate() {
         let number = index as u64;
-        let scene = Scene::random(components, DEVIATION, seed.wrapping_add(number))?;
+        let scene = Scene::random(components, DEVIATION, seed_of(seed, number))?;
         let mut plot = scene_plot(&scene, index + 1);
         for (contestant, name, colour) in SHOWN {
-            let outcome = run_one(contestant, &scene, seed.wrapping_add(number))?;
+            let outcome = run_one(contestant, &scene, seed_of(seed, number))?;
             plot = plot.with(Layer::line(name, flat(&outcome.path)).coloured(colour));
             findings.rows.push(
                 Row::of("figures-5")
@@ -309,14 +309,15 @@ pub fn figures(seed: u64) -> Result<Findings, ExperimentError> {
 
 fn scene_plot(scene: &Scene, number: usize) -> Plot {
     let deviations = Space::Planar.region_95().sqrt();
-    let ellipses = scene.space.dressed().into_iter().flat_map(|mixture| mixture.components()).map(|component| {
+    let ellipses = scene.space.dressed().into_iter().flat_map(crate::modelling::Mixture::components).map(|component| {
         let (mean, covariance) = (component.mean(), component.covariance());
         let rows = [[covariance.m11, covariance.m12], [covariance.m21, covariance.m22]];
         Layer::ellipse("movement space", [mean.x, mean.y], rows, deviations, 0.3 * component.weight())
             .coloured(Colour::SkyBlue)
     });
-    let reference =
-        Layer::line("reference force path", flat(&scene.reference)).coloured(Colour::Vermillion).dashed(Dash::Dashed);
+    let reference = Layer::line("reference force path", flat(scene.reference.points()))
+        .coloured(Colour::Vermillion)
+        .dashed(Dash::Dashed);
     Plot::new(format!("Scene {number}"), Axis::new("x"), Axis::new("y"))
         .equal_units()
         .with_all(ellipses.collect::<Vec<_>>())

@@ -1,7 +1,7 @@
 //! Thesis figure 4.5: eight pairs of paths and the path after each iteration.
 
 use super::findings::{Drawing, ExperimentError, Findings, Row};
-use super::synthetic::{Pair, PairSet, SensorError};
+use super::synthetic::{Pair, PairSet, SensorError, seed_of};
 use super::table_4_1::{Contestant, rehearse_pair};
 use crate::geometry::Point;
 use crate::planning::{Method, SecondMoment};
@@ -19,7 +19,7 @@ pub fn run(seed: u64) -> Result<Findings, ExperimentError> {
     let mut panels = Vec::new();
     for example in 0..EXAMPLES {
         let set = if example % 2 == 0 { PairSet::C } else { PairSet::A };
-        let pair = Pair::random(set, seed.wrapping_add(example));
+        let pair = Pair::random(set, seed_of(seed, example));
         let mut strategy = Contestant::Optimiser(Method::Adam, SecondMoment::Norm).strategy(&pair, false);
         let summaries = rehearse_pair(strategy.as_mut(), &pair, SensorError::None, seed)?;
         findings.rows.extend(summaries.iter().map(|summary| {
@@ -40,7 +40,7 @@ pub fn run(seed: u64) -> Result<Findings, ExperimentError> {
         let final_points = last.map(|last| flat(&last.path)).unwrap_or_default();
         panels.push(
             plot.with(Layer::line("initial path", flat(&pair.initial)).coloured(Colour::ReddishPurple))
-                .with(Layer::line("optimal path", flat(&pair.optimal)).coloured(Colour::Vermillion))
+                .with(Layer::line("optimal path", flat(pair.optimal.points())).coloured(Colour::Vermillion))
                 .with(Layer::scatter("final way-points", final_points).coloured(Colour::Black).marked(Marker::Disc)),
         );
     }

@@ -42,11 +42,11 @@ pub struct Pair {
     /// A straight line.
     pub initial: Vec<Point>,
     /// A curve with the same ends.
-    pub optimal: Vec<Point>,
+    pub optimal: Curve,
 }
 
 impl Pair {
-    /// A random pair of a set.
+    /// A random pair of a set. Seeds of experiments are a thousand pairs apart: see [`seed_of`].
     #[must_use]
     pub fn random(set: PairSet, seed: u64) -> Self {
         let mut random = SplitMix64::new(seed);
@@ -65,20 +65,76 @@ impl Pair {
         if let Some(last) = optimal.last_mut() {
             *last = end;
         }
-        Self { initial: vec![start, end], optimal }
+        Self { initial: vec![start, end], optimal: Curve::new(optimal) }
     }
 
     /// The sum over all way-points of the distance to the optimal path: the thesis' error.
     #[must_use]
     pub fn error(&self, path: &[Point]) -> f64 {
-        path.iter().map(|point| displacement(point, &self.optimal).norm()).sum()
+        path.iter().map(|point| self.optimal.displacement(point).norm()).sum()
     }
 }
 
-/// The displacement from the closest point of a path: the exact resistance of a synthetic problem.
+/// How many points of a curve share a bounding ball.
+const GROUP: usize = 10;
+
+/// A polyline that is asked for its closest point very often.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    points: Vec<Point>,
+    /// Balls round pieces of the curve: a piece whose ball is farther than the closest point so far is passed over.
+    balls: Vec<(Point, f64)>,
+}
+
+impl Curve {
+    /// A curve through points.
+    #[must_use]
+    pub fn new(points: Vec<Point>) -> Self {
+        let balls = pieces(&points).map(|piece| {
+            let centre = Point::from(piece.iter().map(|point| point.coords).sum::<Vector>() / piece.len() as f64);
+            (centre, piece.iter().map(|point| (point - centre).norm()).fold(0.0, f64::max))
+        });
+        Self { balls: balls.collect(), points }
+    }
+
+    /// Its points.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The displacement from the closest point: the exact resistance of a synthetic problem.
+    #[must_use]
+    pub fn displacement(&self, point: &Point) -> Vector {
+        let mut best = Vector::zeros();
+        let mut distance = f64::INFINITY;
+        for (piece, (centre, radius)) in pieces(&self.points).zip(&self.balls) {
+            let reach = distance + radius;
+            if (point - centre).norm_squared() > reach * reach {
+                continue;
+            }
+            let offset = closest_on_polyline(point, piece).map_or_else(Vector::zeros, |closest| point - closest);
+            if offset.norm_squared() < distance * distance {
+                (best, distance) = (offset, offset.norm());
+            }
+        }
+        best
+    }
+}
+
+/// Pieces of a polyline that share their ends.
+fn pieces(points: &[Point]) -> impl Iterator<Item = &[Point]> {
+    let count = points.len().saturating_sub(1).div_ceil(GROUP).max(1);
+    (0..count).filter_map(move |index| {
+        let start = index * GROUP;
+        points.get(start..(start + GROUP + 1).min(points.len()))
+    })
+}
+
+/// The seed of problem `index` (below 1,000) of the experiment with seed `seed`: no two experiments share a problem.
 #[must_use]
-pub fn displacement(point: &Point, path: &[Point]) -> Vector {
-    closest_on_polyline(point, path).map_or_else(Vector::zeros, |closest| point - closest)
+pub const fn seed_of(seed: u64, index: u64) -> u64 {
+    seed.wrapping_sub(1).wrapping_mul(1_000).wrapping_add(1).wrapping_add(index)
 }
 
 /// How a sensor errs.
@@ -158,7 +214,7 @@ pub struct Scene {
     /// The modes of the first and the last joint, and a draw of the middle one.
     pub initial: [Point; 3],
     /// Where no force would be felt.
-    pub reference: Vec<Point>,
+    pub reference: Curve,
 }
 
 impl Scene {
@@ -177,7 +233,7 @@ impl Scene {
         };
         let middle = Point::from(space.elbow.sample(&mut random));
         let initial = [space.hand.mode(), Point::new(middle.x, middle.y, 0.0), space.shoulder.mode()];
-        let reference = stray(&initial, deviation, &mut random);
+        let reference = Curve::new(stray(&initial, deviation, &mut random));
         Ok(Self { space, initial, reference })
     }
 
@@ -239,21 +295,36 @@ mod tests {
             for seed in 0..20 {
                 let pair = Pair::random(set, seed);
                 assert_eq!(pair, Pair::random(set, seed));
-                let height = pair.optimal.iter().map(|point| point.y.abs()).fold(0.0, f64::max);
+                let height = pair.optimal.points().iter().map(|point| point.y.abs()).fold(0.0, f64::max);
                 assert!((low - 1e-9..=high + 1e-9).contains(&height));
-                assert_eq!(pair.initial.last(), pair.optimal.last());
-                assert!(pair.error(&pair.optimal) < 1e-9);
+                assert_eq!(pair.initial.last(), pair.optimal.points().last());
+                assert!(pair.error(pair.optimal.points()) < 1e-9);
             }
         }
+    }
+
+    #[test]
+    fn a_curve_finds_the_closest_point_that_a_search_of_all_segments_finds() {
+        let mut random = SplitMix64::new(9);
+        for seed in 0..20 {
+            let curve = Pair::random(PairSet::B, seed).optimal;
+            for _ in 0..50 {
+                let point = Point::new(random.between(-2.0, 6.0), random.between(-3.0, 3.0), 0.0);
+                let plain = point - closest_on_polyline(&point, curve.points()).unwrap();
+                assert!((curve.displacement(&point).norm() - plain.norm()).abs() < 1e-12);
+            }
+        }
+        assert_eq!(Curve::new(Vec::new()).displacement(&Point::origin()), Vector::zeros());
     }
 
     #[test]
     fn scenes_have_the_components_asked_for_and_a_reference_with_the_same_ends() {
         let scene = Scene::random([3, 2, 1], 0.9, 4).unwrap();
         assert_eq!(scene.space.dressed().map(|joint| joint.components().len()), [3, 2, 1]);
-        assert_eq!(scene.reference.first(), Some(&scene.initial[0]));
-        assert_eq!(scene.reference.last(), Some(&scene.initial[2]));
-        let strays = scene.reference.iter().map(|point| displacement(point, &scene.initial).norm());
+        assert_eq!(scene.reference.points().first(), Some(&scene.initial[0]));
+        assert_eq!(scene.reference.points().last(), Some(&scene.initial[2]));
+        let initial = Curve::new(scene.initial.to_vec());
+        let strays = scene.reference.points().iter().map(|point| initial.displacement(point).norm());
         assert!(strays.fold(0.0, f64::max) <= 0.9 + 1e-9);
         for seed in 0..50 {
             assert!(Scene::any(0.9, seed).is_ok());

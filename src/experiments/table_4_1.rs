@@ -2,7 +2,7 @@
 //! families of pairs, two forms of the second moment, and a dozen ways in which a sensor errs.
 
 use super::findings::{Drawing, ExperimentError, Findings, Row};
-use super::synthetic::{Pair, PairSet, SensorError, displacement};
+use super::synthetic::{Pair, PairSet, SensorError, seed_of};
 use crate::modelling::SplitMix64;
 use crate::planning::{Method, OptimiserSettings, SecondMoment};
 use crate::report::plot::{Axis, Figure, Layer, Plot};
@@ -93,7 +93,7 @@ impl Contestant {
                 Box::new(kernel_step(&pair.initial, &learning, &kernel))
             }
             Self::OffsetField => {
-                learning.maximum_step = f64::MAX;
+                learning.maximum_step = ROBUST_CLIP;
                 let field = OffsetFieldSettings {
                     length_scale: 0.4,
                     deviation: 0.6,
@@ -132,7 +132,7 @@ pub fn rehearse_pair(
 ) -> Result<Vec<IterationSummary>, ExperimentError> {
     let mut random = SplitMix64::new(seed);
     let probing = Probing { step: STEP, threshold: THRESHOLD };
-    let sense = |point: &_| error.reading(displacement(point, &pair.optimal), &mut random);
+    let sense = |point: &_| error.reading(pair.optimal.displacement(point), &mut random);
     Ok(rehearse::run(strategy, &probing, sense)?)
 }
 
@@ -142,7 +142,7 @@ fn run_one(contestant: Contestant, set: PairSet, error: SensorError, seed: u64) 
     let mut strategy = contestant.strategy(&pair, error != SensorError::None);
     let summaries = rehearse_pair(strategy.as_mut(), &pair, error, seed ^ 0xE4404)?;
     let seconds = start.elapsed().as_secs_f64();
-    let comfort = crate::planning::criteria::comfort(strategy.path(), &pair.optimal, THRESHOLD, STEP);
+    let comfort = crate::planning::criteria::comfort(strategy.path(), pair.optimal.points(), THRESHOLD, STEP);
     Ok(Outcome {
         error: pair.error(strategy.path()),
         mean_distance: comfort.mean_distance,
@@ -160,9 +160,9 @@ fn row(
     contestant: Contestant,
     set: PairSet,
     error: SensorError,
-    seed: u64,
+    (pairs, seed): (u64, u64),
 ) -> Result<Row, ExperimentError> {
-    let runs = (0..PAIRS).into_par_iter().map(|index| run_one(contestant, set, error, seed.wrapping_add(index)));
+    let runs = (0..pairs).into_par_iter().map(|index| run_one(contestant, set, error, seed_of(seed, index)));
     let outcomes = runs.collect::<Result<Vec<_>, _>>()?;
     let of = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).collect::<Vec<_>>();
     let converged = outcomes.iter().filter(|outcome| outcome.converged).count();
@@ -171,7 +171,7 @@ fn row(
         .with("set", format!("{set:?}"))
         .with("form", contestant.form())
         .with("sensor_error", error.name())
-        .with("pairs", PAIRS)
+        .with("pairs", pairs)
         .with_statistics("error", of(|outcome| outcome.error))
         .with_statistics("iterations", of(|outcome| outcome.iterations))
         .with_statistics("contacts", of(|outcome| outcome.contacts))
@@ -198,21 +198,31 @@ fn optimisers(moment: SecondMoment) -> impl Iterator<Item = Contestant> {
 pub fn run(seed: u64) -> Result<Findings, ExperimentError> {
     let mut findings = Findings::default();
     for contestant in optimisers(SecondMoment::Norm).chain(NODES) {
-        findings.rows.push(row("4.1", contestant, PairSet::A, SensorError::None, seed)?);
+        let row = row("4.1", contestant, PairSet::A, SensorError::None, (PAIRS, seed))?;
+        findings.rows.push(beside_the_thesis(row, contestant));
     }
     findings.drawings.push(drawing(&findings.rows));
     for set in PairSet::ALL {
         for contestant in optimisers(SecondMoment::Norm).chain(optimisers(SecondMoment::Axis)).chain(NODES) {
-            findings.rows.push(row("4.1-sets", contestant, set, SensorError::None, seed)?);
+            findings.rows.push(row("4.1-sets", contestant, set, SensorError::None, (PAIRS, seed))?);
         }
     }
     for error in SensorError::ALL {
         for contestant in optimisers(SecondMoment::Norm).chain(NODES) {
-            findings.rows.push(row("4.1-sensors", contestant, PairSet::C, error, seed)?);
+            findings.rows.push(row("4.1-sensors", contestant, PairSet::C, error, (PAIRS, seed))?);
         }
     }
     findings.remarks = remarks();
     Ok(findings)
+}
+
+/// Adds the thesis' own numbers, where it has any.
+fn beside_the_thesis(row: Row, contestant: Contestant) -> Row {
+    let Contestant::Optimiser(method, _) = contestant else { return row };
+    let names = ["error_mean", "error_sd", "iterations_mean", "iterations_sd", "seconds_mean"];
+    let numbers = THESIS.iter().find(|(other, _)| *other == method).map(|(_, numbers)| numbers);
+    let cells = names.into_iter().zip(numbers.into_iter().flatten());
+    cells.fold(row, |row, (name, number)| row.with(format!("thesis_{name}"), *number))
 }
 
 fn drawing(rows: &[Row]) -> Drawing {
@@ -272,7 +282,7 @@ mod tests {
     fn adam_errs_least_sgd_is_slowest_and_the_kernel_step_beats_both() {
         let rows: Vec<_> = optimisers(SecondMoment::Norm)
             .chain(NODES)
-            .map(|contestant| row("4.1", contestant, PairSet::A, SensorError::None, 1).unwrap())
+            .map(|contestant| row("4.1", contestant, PairSet::A, SensorError::None, (PAIRS, 1)).unwrap())
             .collect();
         let of = |name: &str, quantity: &str| {
             rows.iter().find(|row| row.value("method").unwrap() == name).unwrap().number(quantity)

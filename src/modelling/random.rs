@@ -1,11 +1,11 @@
 //! The seeded generator behind every draw of the learning rooms, so that a seed repeats a result on any machine.
 //!
-//! SplitMix64 (Steele, Lea and Flood, 2014): tiny, fast, and the same in every language. Never used for secrets.
+//! `SplitMix64` (Steele, Lea and Flood, 2014): tiny, fast, and the same in every language. Never used for secrets.
 
 use crate::geometry::Vector;
 use std::f64::consts::TAU;
 
-/// A SplitMix64 generator.
+/// A `SplitMix64` generator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SplitMix64 {
     state: u64,

@@ -95,7 +95,7 @@ mod tests {
         for case in file["choose_next_goal"].as_array().unwrap() {
             let parameters = &case["params"];
             let search = GoalSearch {
-                draws: parameters["j_max"].as_u64().unwrap_or(20) as u32,
+                draws: parameters["j_max"].as_u64().map_or(20, |draws| u32::try_from(draws).unwrap()),
                 end_radius: 0.5,
                 middle_radius: 0.2,
                 include_current: parameters["include_current"].as_bool().unwrap_or(true),

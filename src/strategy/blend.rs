@@ -92,6 +92,10 @@ impl Strategy for BlendStrategy {
         self.active_mut().settled(residual);
     }
 
+    fn learns_from_residuals(&self) -> bool {
+        self.active().learns_from_residuals()
+    }
+
     fn arrived(&mut self) {
         self.active_mut().arrived();
     }

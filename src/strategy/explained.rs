@@ -50,6 +50,10 @@ impl Strategy for Explained {
         self.inner.settled(residual);
     }
 
+    fn learns_from_residuals(&self) -> bool {
+        self.inner.learns_from_residuals()
+    }
+
     fn arrived(&mut self) {
         self.inner.arrived();
     }

@@ -9,7 +9,7 @@ use super::{
     Contact, Finish, Ignored, IterationSummary, LearnedPath, LearningSettings, Reaction, Rule, Strategy, StrategyError,
     StrategyKind, WaypointChange,
 };
-use crate::geometry::{Finite, Point, Vector};
+use crate::geometry::{Finite, Point, Vector, polyline_length};
 use crate::planning::line;
 use std::collections::VecDeque;
 use std::fmt::Debug;
@@ -33,6 +33,10 @@ const STIFFNESS_MEMORY: usize = 8;
 const LEAST_STIFFNESS: f64 = 1e-6;
 /// Moves shorter than this say nothing about the stiffness, in metres.
 const LEAST_MOVE: f64 = 1e-9;
+/// A reading below this share of the present stiffness is noise: it would make the next step absurdly long.
+const LEAST_SHARE: f64 = 0.05;
+/// A path never has more nodes than this: a field of offsets costs their square at each contact.
+const MOST_NODES: f64 = 400.0;
 /// A probe this close to a node is at the node.
 const AT_NODE: f64 = 1e-9;
 
@@ -153,8 +157,9 @@ impl Strategy for NodeStrategy {
         }
         let start = *self.path.first().ok_or(StrategyError::ShortPath { points: 0 })?;
         self.iteration = self.iteration.saturating_add(1);
-        let nodes = line::resample(&self.path, self.settings.step);
-        self.correction.rebase(&nodes, self.settings.step);
+        let step = self.settings.step.max(polyline_length(&self.path) / MOST_NODES);
+        let nodes = line::resample(&self.path, step);
+        self.correction.rebase(&nodes, step);
         self.under_way = Some(UnderWay { pass: Pass::new(start), nodes, next: 1, unsettled: None, added: false });
         Ok(())
     }
@@ -189,13 +194,17 @@ impl Strategy for NodeStrategy {
             return;
         }
         let reading = (felt - residual).dot(&moved) / moved.norm_squared();
-        if reading > LEAST_STIFFNESS {
+        if reading > LEAST_STIFFNESS.max(LEAST_SHARE * self.stiffness) {
             self.readings.push_back(reading);
             if self.readings.len() > STIFFNESS_MEMORY {
                 self.readings.pop_front();
             }
             self.stiffness = self.readings.iter().sum::<f64>() / self.readings.len() as f64;
         }
+    }
+
+    fn learns_from_residuals(&self) -> bool {
+        self.learn_stiffness
     }
 
     fn arrived(&mut self) {

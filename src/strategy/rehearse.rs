@@ -27,18 +27,15 @@ pub fn iteration(
     strategy.begin()?;
     let mut current = strategy.path().first().copied().unwrap_or_default();
     while let Some(goal) = strategy.goal() {
-        match first_contact(strategy, probing, sense, current, goal) {
-            Some(contact) => {
-                let reaction = strategy.resisted(&contact);
-                current = reaction.move_to;
-                if reaction.ignored.is_none() {
-                    strategy.settled(&sense(&current));
-                }
-            }
-            None => {
-                strategy.arrived();
-                current = goal;
-            }
+        let Some(contact) = first_contact(strategy, probing, sense, current, goal) else {
+            strategy.arrived();
+            current = goal;
+            continue;
+        };
+        let reaction = strategy.resisted(&contact);
+        current = reaction.move_to;
+        if reaction.ignored.is_none() && strategy.learns_from_residuals() {
+            strategy.settled(&sense(&current));
         }
     }
     Ok(strategy.finish())

@@ -15,6 +15,9 @@ fn points(value: &Value) -> Vec<Point> {
 
 fn settings(parameters: &Value) -> (LearningSettings, f64) {
     let number = |key: &str, otherwise: f64| parameters.get(key).and_then(Value::as_f64).unwrap_or(otherwise);
+    let whole = |key: &str, otherwise: u32| {
+        parameters.get(key).and_then(Value::as_u64).map_or(otherwise, |value| u32::try_from(value).unwrap())
+    };
     let word = |key: &str| parameters.get(key).cloned();
     let optimiser = OptimiserSettings {
         method: word("method").map_or(Method::Adam, |value| serde_json::from_value(value).unwrap()),
@@ -25,9 +28,9 @@ fn settings(parameters: &Value) -> (LearningSettings, f64) {
         optimiser,
         step: number("step", 0.05),
         maximum_step: f64::MAX,
-        maximum_iterations: number("t_max", 40.0) as u32,
+        maximum_iterations: whole("t_max", 40),
         energy_threshold: number("tau_energy", 0.05),
-        maximum_waypoints: number("max_points", 2_500.0) as usize,
+        maximum_waypoints: whole("max_points", 2_500) as usize,
         end_tolerance: 1e-12,
         ..LearningSettings::default()
     };
@@ -51,7 +54,7 @@ fn algorithm_2_makes_the_paths_of_the_vectors() {
         let mut strategy = ForceStrategy::new(&points(&case["initial"]), &learning);
         let sense = |position: &Point| position - closest_on_polyline(position, &optimal).unwrap();
         let summaries = rehearse::run(&mut strategy, &Probing { step: learning.step, threshold }, sense).unwrap();
-        assert_eq!(summaries.len(), case["iterations"].as_u64().unwrap() as usize, "{name}");
+        assert_eq!(summaries.len(), usize::try_from(case["iterations"].as_u64().unwrap()).unwrap(), "{name}");
         let paths = case["path_after_each_iteration"].as_array().unwrap();
         for (index, (summary, path)) in summaries.iter().zip(paths).enumerate() {
             assert_close(&summary.path, &points(path), 1e-9, name);

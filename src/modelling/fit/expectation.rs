@@ -118,17 +118,11 @@ impl<'a, const D: usize> State<'a, D> {
         let mut covariance = SMatrix::<f64, D, D>::zeros();
         for (point, share) in self.points.iter().zip(share) {
             let offset = point - mean;
-            let weighted = offset * *share;
-            for column in 0..D {
-                for row in column..D {
-                    covariance[(row, column)] += weighted[row] * offset[column];
-                }
-            }
+            covariance += (offset * *share) * offset.transpose();
         }
-        let covariance = SMatrix::from_fn(|row, column| covariance[(row.max(column), row.min(column))]) / mass;
         if let Some(component) = self.components.get_mut(index) {
             component.mean = mean;
-            component.covariance = floored(&covariance, self.floor_squared);
+            component.covariance = floored(&(covariance / mass), self.floor_squared);
         }
     }
 

@@ -18,16 +18,20 @@ macro_rules! golden {
     };
 }
 
+fn whole(value: &Value) -> usize {
+    usize::try_from(value.as_u64().unwrap()).unwrap()
+}
+
 fn settings(case: &Value) -> FitSettings {
     FitSettings {
-        least_components: case["config"]["kmin"].as_u64().unwrap() as usize,
-        most_components: case["config"]["kmax"].as_u64().unwrap() as usize,
+        least_components: whole(&case["config"]["kmin"]),
+        most_components: whole(&case["config"]["kmax"]),
         ..FitSettings::default()
     }
 }
 
 fn starts(case: &Value) -> Vec<usize> {
-    case["init_indices"].as_array().unwrap().iter().map(|index| index.as_u64().unwrap() as usize).collect()
+    case["init_indices"].as_array().unwrap().iter().map(whole).collect()
 }
 
 #[test]
