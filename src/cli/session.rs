@@ -101,7 +101,8 @@ impl Session {
                 inbox.offer(input);
             }
         });
-        let link = RobotLink::connect(&node, LinkSettings { is_dry_run: opening.is_dry_run }, sink).map_err(ros_failure)?;
+        let link =
+            RobotLink::connect(&node, LinkSettings { is_dry_run: opening.is_dry_run }, sink).map_err(ros_failure)?;
         let publisher = link.stop_publisher();
         let stop = StopThread::start(move || {
             if let Some(publisher) = &publisher {
@@ -169,7 +170,8 @@ impl Session {
             }
             last = Some(newest.now);
             let mut snapshot = Snapshot::clone(&newest);
-            snapshot.topics = Shared::new(link.topics().iter().map(|report| topic_health(snapshot.now, report)).collect());
+            snapshot.topics =
+                Shared::new(link.topics().iter().map(|report| topic_health(snapshot.now, report)).collect());
             snapshot.master.uri.clone_from(&uri);
             snapshot.recorder = recorder.as_deref().map(recorder_view).unwrap_or_default();
             Some(snapshot)
@@ -180,7 +182,8 @@ impl Session {
     pub(super) fn close(mut self) -> Option<String> {
         drop(self.engine.take());
         drop(self.stop.take());
-        let path = self.recorder.take().and_then(Arc::into_inner).map(|recorder| recorder.finish().path.display().to_string());
+        let path =
+            self.recorder.take().and_then(Arc::into_inner).map(|recorder| recorder.finish().path.display().to_string());
         leave((self.link, self.node));
         path
     }

@@ -59,12 +59,15 @@ fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failur
     let profile = arguments.profile.iter().flat_map(|name| ["--profile".to_owned(), name.clone()]);
     let mut command = environment::this_program(typed.chain(profile), port).map_err(Failure::fault)?;
     // The screen belongs to the console alone.
-    let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().map_err(Failure::fault)?;
+    let child =
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().map_err(Failure::fault)?;
     let mut simulator = Simulator(child);
     let began = Instant::now();
     while node::probe_master(&node::master_uri()).is_err() {
         if let Ok(Some(status)) = simulator.0.try_wait() {
-            return Err(Failure::Fault(format!("the simulator ended before it was up ({status}): run `valet sim` to see why")));
+            return Err(Failure::Fault(format!(
+                "the simulator ended before it was up ({status}): run `valet sim` to see why"
+            )));
         }
         if began.elapsed() > SIMULATOR_WITHIN {
             return Err(Failure::Fault("the simulator does not come up: this computer is overloaded".into()));

@@ -7,8 +7,8 @@ use super::eigen::floored;
 use nalgebra::{Cholesky, SMatrix, SVector};
 use std::f64::consts::TAU;
 
-/// Exponents are held below this: exp of it is still finite.
-const HIGHEST_EXPONENT: f64 = 700.0;
+/// After so many sweeps the totals are worked out anew, free of what rounding has gathered.
+const SWEEPS_TO_REFRESH: u32 = 16;
 
 #[derive(Clone, Debug)]
 struct Component<const D: usize> {
@@ -29,6 +29,14 @@ pub(super) struct State<'a, const D: usize> {
     /// The weighted sum of the densities at each point.
     totals: Vec<f64>,
     floor_squared: f64,
+    sweeps: u32,
+}
+
+/// What a component takes of the points: mass, and first and second moment about its present mean.
+struct Share<const D: usize> {
+    mass: f64,
+    first: SVector<f64, D>,
+    second: SMatrix<f64, D, D>,
 }
 
 impl<'a, const D: usize> State<'a, D> {
@@ -46,6 +54,7 @@ impl<'a, const D: usize> State<'a, D> {
             shifts: Vec::new(),
             totals: Vec::new(),
             floor_squared: floor * floor,
+            sweeps: 0,
         };
         state.refresh();
         state
@@ -75,14 +84,16 @@ impl<'a, const D: usize> State<'a, D> {
     /// One sweep: every component in turn takes its share of the points, dies where it is not worth its parameters, and
     /// is moved at once.
     pub(super) fn sweep(&mut self) {
-        self.refresh();
+        self.sweeps += 1;
+        if self.sweeps.is_multiple_of(SWEEPS_TO_REFRESH) {
+            self.refresh();
+        }
         let mut index = 0;
-        while index < self.components.len() {
-            let share = self.responsibility(index);
-            let mass: f64 = share.iter().sum();
-            let weight = (mass - half_parameters::<D>()).max(0.0) / self.points.len() as f64;
+        while let Some(component) = self.components.get(index) {
+            let shared = share(self.points, component, &self.totals);
+            let weight = (shared.mass - half_parameters::<D>()).max(0.0) / self.points.len() as f64;
             if weight > 0.0 {
-                self.move_component(index, &share, mass);
+                self.move_component(index, &shared);
                 self.set_weight(index, weight);
                 index += 1;
             } else {
@@ -102,27 +113,12 @@ impl<'a, const D: usize> State<'a, D> {
         }
     }
 
-    fn responsibility(&self, index: usize) -> Vec<f64> {
-        self.components.get(index).map_or_else(Vec::new, |component| {
-            let terms = component.density.iter().zip(&self.totals);
-            terms.map(|(density, total)| component.weight * density / total).collect()
-        })
-    }
-
-    fn move_component(&mut self, index: usize, share: &[f64], mass: f64) {
-        let mut mean = SVector::<f64, D>::zeros();
-        for (point, share) in self.points.iter().zip(share) {
-            mean += point * *share;
-        }
-        mean /= mass;
-        let mut covariance = SMatrix::<f64, D, D>::zeros();
-        for (point, share) in self.points.iter().zip(share) {
-            let offset = point - mean;
-            covariance += (offset * *share) * offset.transpose();
-        }
+    fn move_component(&mut self, index: usize, shared: &Share<D>) {
         if let Some(component) = self.components.get_mut(index) {
-            component.mean = mean;
-            component.covariance = floored(&(covariance / mass), self.floor_squared);
+            let shift = shared.first / shared.mass;
+            component.mean += shift;
+            let covariance = shared.second / shared.mass - shift * shift.transpose();
+            component.covariance = floored(&covariance, self.floor_squared);
         }
     }
 
@@ -169,7 +165,8 @@ impl<'a, const D: usize> State<'a, D> {
         }
         self.totals = vec![0.0; self.points.len()];
         for (component, values) in self.components.iter_mut().zip(logarithms) {
-            component.density = values.iter().zip(&self.shifts).map(|(value, shift)| (value - shift).exp()).collect();
+            component.density =
+                values.iter().zip(&self.shifts).map(|(value, shift)| exponential(value - shift)).collect();
             for (total, density) in self.totals.iter_mut().zip(&component.density) {
                 *total += component.weight * density;
             }
@@ -185,9 +182,57 @@ fn half_parameters<const D: usize>() -> f64 {
 fn densities<const D: usize>(points: &[SVector<f64, D>], component: &Component<D>, shifts: &[f64]) -> Vec<f64> {
     let mut values = log_densities(points, component, shifts);
     for value in &mut values {
-        *value = value.min(HIGHEST_EXPONENT).exp();
+        *value = exponential(*value);
     }
     values
+}
+
+/// One pass over the points: their shares and the moments of them.
+fn share<const D: usize>(points: &[SVector<f64, D>], component: &Component<D>, totals: &[f64]) -> Share<D> {
+    let mut shared = Share { mass: 0.0, first: SVector::zeros(), second: SMatrix::zeros() };
+    for ((point, density), total) in points.iter().zip(&component.density).zip(totals) {
+        let part = component.weight * density / total;
+        let offset = point - component.mean;
+        let weighted = offset * part;
+        shared.mass += part;
+        shared.first += weighted;
+        shared.second += weighted * offset.transpose();
+    }
+    shared
+}
+
+/// The exponential function to within two units in the last place, 0 below -700 and held at e^700 above.
+///
+/// The standard library's is a call a number; this one the compiler turns into vector instructions, which makes a fit
+/// more than twice as fast. Range reduction by ln 2 in two parts (Cody and Waite, 1980) and the Taylor series.
+fn exponential(value: f64) -> f64 {
+    /// Adding and taking away this rounds to a whole number and leaves it in the lowest bits.
+    const ROUNDER: f64 = 6_755_399_441_055_744.0;
+    /// 1/12! to 1/0!: enough for a rest of up to half of ln 2.
+    const INVERSE_FACTORIALS: [f64; 13] = [
+        1.0 / 479_001_600.0,
+        1.0 / 39_916_800.0,
+        1.0 / 3_628_800.0,
+        1.0 / 362_880.0,
+        1.0 / 40_320.0,
+        1.0 / 5_040.0,
+        1.0 / 720.0,
+        1.0 / 120.0,
+        1.0 / 24.0,
+        1.0 / 6.0,
+        0.5,
+        1.0,
+        1.0,
+    ];
+    const LN_2_HIGH: f64 = 0.693_147_180_369_123_8;
+    const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    let clamped = value.clamp(-700.0, 700.0);
+    let rounded = clamped * std::f64::consts::LOG2_E + ROUNDER;
+    let whole = rounded - ROUNDER;
+    let rest = (clamped - whole * LN_2_HIGH) - whole * LN_2_LOW;
+    let series = INVERSE_FACTORIALS.iter().fold(0.0, |sum, coefficient| sum * rest + coefficient);
+    let scale = f64::from_bits(rounded.to_bits().wrapping_add(1023) << 52);
+    if value < -700.0 { 0.0 } else { series * scale }
 }
 
 /// The log density at each point less the point's shift.
@@ -202,4 +247,19 @@ fn log_densities<const D: usize>(points: &[SVector<f64, D>], component: &Compone
         scale - 0.5 * (whitening * (point - component.mean)).norm_squared() - shift
     };
     points.iter().zip(shifts).map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponential_agrees_with_the_standard_library() {
+        for index in -70_000..=70_000 {
+            let value = f64::from(index) * 0.01 + 1e-4;
+            let (ours, exact) = (exponential(value), value.min(700.0).exp());
+            assert!((ours - exact).abs() <= 5e-16 * exact, "{value}: {ours} is not {exact}");
+        }
+        assert!(exponential(-1e6) == 0.0 && exponential(f64::NEG_INFINITY) == 0.0);
+    }
 }
