@@ -22,7 +22,6 @@ mod session;
 mod shell;
 mod sim;
 mod torture;
-mod train;
 
 use clap::{Parser, Subcommand};
 use exit::Failure;
@@ -45,7 +44,6 @@ enum Command {
     Console(console::Arguments),
     Sim(sim::Arguments),
     Doctor(doctor::Arguments),
-    Train(train::Arguments),
     Fit(fit::Arguments),
     Reproduce(reproduce::Arguments),
     Torture(torture::Arguments),
@@ -87,7 +85,6 @@ fn run(line: CommandLine) -> Result<(), Failure> {
         Command::Console(arguments) => console::run(&arguments),
         Command::Sim(arguments) => sim::run(&arguments),
         Command::Doctor(arguments) => doctor::run(&arguments),
-        Command::Train(arguments) => train::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Torture(arguments) => torture::run(&arguments),
