@@ -107,7 +107,9 @@ impl Curve {
     #[must_use]
     pub fn displacement(&self, point: &Point) -> Vector {
         let mut best = Vector::zeros();
-        let mut distance = f64::INFINITY;
+        // No point of a ball is farther than its centre and its radius together, so the curve is at least that close.
+        let bounds = self.balls.iter().map(|(centre, radius)| (point - centre).norm() + radius);
+        let mut distance = bounds.fold(f64::INFINITY, f64::min) * (1.0 + 1e-12);
         for (piece, (centre, radius)) in pieces(&self.points).zip(&self.balls) {
             let reach = distance + radius;
             if (point - centre).norm_squared() > reach * reach {
