@@ -5,8 +5,18 @@
 
 pub mod camera;
 pub mod depth;
+pub mod file;
+pub mod foreground;
+pub mod joints;
 pub mod part;
+pub mod probe;
+pub mod training;
+pub mod tree;
 
 pub use camera::{CameraError, Intrinsics};
 pub use depth::{DepthError, DepthImage, RawImage};
+pub use file::FileError;
+pub use foreground::{Facing, View, ViewError};
+pub use joints::{CameraJoints, PoseFinder};
 pub use part::Part;
+pub use tree::Forest;

@@ -4,6 +4,7 @@
 //! fingers, cloth with folds, lap and chair. Camera frame: x right, y down, z forward, metres. Same seed, same image.
 
 mod body;
+pub mod dataset;
 mod furniture;
 mod look;
 mod noise;

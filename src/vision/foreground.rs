@@ -1,0 +1,256 @@
+//! What of a depth image is the person below the head: more depends on this than on the trees.
+//!
+//! Three rules: nearer than the empty scene, not deeper than the neck by more than an arm's reach, and no head: what is
+//! nearer than the neck inside a cylinder about it. The thesis cut everything nearer than the neck, which loses raised hands.
+//! Lap and chair that remain are for the trees' class `other`.
+
+use super::camera::{CameraError, Intrinsics};
+use super::depth::{DepthError, DepthImage};
+use super::probe::ProbeImage;
+use crate::geometry::{Finite, Point};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The person is nearer than the empty scene by at least this, in millimetres.
+const EMPTY_MARGIN: u16 = 30;
+/// Nothing of the person is deeper than the neck by more, in metres: hands beside the thighs are about 0.55 m below it.
+const BELOW_NECK: f64 = 0.60;
+/// The head begins this far above the neck, in metres.
+const ABOVE_NECK: f64 = 0.01;
+/// Radius of the head's cylinder, in metres.
+const HEAD_RADIUS: f64 = 0.16;
+/// Nearest reading that counts, in millimetres: nearer ones are noise in an Xtion.
+const NEAREST: u16 = 400;
+
+/// Which way a person faces in the image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Facing {
+    /// Towards the lower edge: the camera is ahead of the person or above. The person's left is at large x.
+    #[default]
+    LowerEdge,
+    /// Towards the upper edge: the camera is behind the person, as on the robot's head. The person's left is at small x.
+    UpperEdge,
+}
+
+impl Facing {
+    /// Both ways.
+    pub const BOTH: [Self; 2] = [Self::LowerEdge, Self::UpperEdge];
+}
+
+/// What is known about a view besides its pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The camera.
+    pub camera: Intrinsics,
+    /// The neck's root in the camera frame, in metres.
+    pub neck: Point,
+    /// The scene without the person, of the same size.
+    pub empty: Option<&'a DepthImage>,
+    /// Which way the person faces.
+    pub facing: Facing,
+}
+
+/// Why a view cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// The image.
+    #[error(transparent)]
+    Depth(#[from] DepthError),
+    /// The camera.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The neck is nowhere a camera could see it.
+    #[error(
+        "the neck at ({x}, {y}, {z}) m in the camera frame: measure the distance from the camera to the neck again"
+    )]
+    Neck {
+        /// Right.
+        x: f64,
+        /// Down.
+        y: f64,
+        /// Forward.
+        z: f64,
+    },
+}
+
+/// A foreground pixel in the probe image's own columns and rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pixel {
+    /// Column.
+    pub column: u16,
+    /// Row.
+    pub row: u16,
+    /// Depth in millimetres.
+    pub depth: u16,
+}
+
+impl View<'_> {
+    /// Checks that everything fits an image.
+    ///
+    /// # Errors
+    /// The first thing that does not.
+    pub fn check(&self, image: &DepthImage) -> Result<(), ViewError> {
+        self.camera.check()?;
+        image.check_readings()?;
+        if let Some(empty) = self.empty {
+            image.check_same_size(empty)?;
+        }
+        let neck = self.neck;
+        if !neck.is_finite() || !(0.2..8.0).contains(&neck.z) {
+            return Err(ViewError::Neck { x: neck.x, y: neck.y, z: neck.z });
+        }
+        Ok(())
+    }
+
+    /// The camera of the probe image: turned by half a turn where the person faces the upper edge.
+    #[must_use]
+    pub fn probe_camera(&self, width: usize, height: usize) -> Intrinsics {
+        match self.facing {
+            Facing::LowerEdge => self.camera,
+            Facing::UpperEdge => Intrinsics {
+                cx: width as f64 - 1.0 - self.camera.cx,
+                cy: height as f64 - 1.0 - self.camera.cy,
+                ..self.camera
+            },
+        }
+    }
+
+    /// Fills the probe image with the foreground, turned so that the person faces the lower edge, and lists its pixels row by row.
+    ///
+    /// # Errors
+    /// As [`View::check`].
+    pub fn extract(
+        &self,
+        image: &DepthImage,
+        probe: &mut ProbeImage,
+        pixels: &mut Vec<Pixel>,
+    ) -> Result<(), ViewError> {
+        self.check(image)?;
+        let (width, height) = (image.width(), image.height());
+        probe.reset(width, height);
+        pixels.clear();
+        let turned = self.facing == Facing::UpperEdge;
+        let rules = Rules::of(self);
+        for row in 0..height {
+            let source = if turned { height - 1 - row } else { row };
+            let start = source * width;
+            let readings = image.millimetres().get(start..start + width).unwrap_or(&[]);
+            let behind = self.empty.and_then(|empty| empty.millimetres().get(start..start + width));
+            for column in 0..width {
+                let from = if turned { width - 1 - column } else { column };
+                let depth = readings.get(from).copied().unwrap_or(0);
+                let empty = behind.and_then(|behind| behind.get(from)).copied().unwrap_or(0);
+                if rules.keeps(depth, empty, from as f64, source as f64) {
+                    probe.set(column, row, depth);
+                    pixels.push(pixel(column, row, depth));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "images have at most 4096 pixels a side")]
+const fn pixel(column: usize, row: usize, depth: u16) -> Pixel {
+    Pixel { column: column as u16, row: row as u16, depth }
+}
+
+/// The rules in millimetres, once for all pixels of an image.
+struct Rules {
+    camera: Intrinsics,
+    neck: Point,
+    deepest: u16,
+    head_top: u16,
+}
+
+impl Rules {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the neck's depth has been checked")]
+    fn of(view: &View<'_>) -> Self {
+        Self {
+            camera: view.camera,
+            neck: view.neck,
+            deepest: ((view.neck.z + BELOW_NECK) * 1000.0) as u16,
+            head_top: ((view.neck.z - ABOVE_NECK) * 1000.0) as u16,
+        }
+    }
+
+    #[inline]
+    fn keeps(&self, depth: u16, empty: u16, column: f64, row: f64) -> bool {
+        if depth < NEAREST || depth > self.deepest || (empty > 0 && depth.saturating_add(EMPTY_MARGIN) >= empty) {
+            return false;
+        }
+        if depth >= self.head_top {
+            return true;
+        }
+        let point = self.camera.point(column, row, f64::from(depth) / 1000.0);
+        (point.x - self.neck.x).hypot(point.y - self.neck.y) > HEAD_RADIUS
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view() -> View<'static> {
+        View {
+            camera: Intrinsics { fx: 100.0, fy: 100.0, cx: 20.0, cy: 10.0 },
+            neck: Point::new(0.0, 0.0, 1.0),
+            empty: None,
+            facing: Facing::LowerEdge,
+        }
+    }
+
+    fn extract(view: &View<'_>, image: &DepthImage) -> Result<Vec<Pixel>, ViewError> {
+        let (mut probe, mut pixels) = (ProbeImage::default(), Vec::new());
+        view.extract(image, &mut probe, &mut pixels).map(|()| pixels)
+    }
+
+    fn image(set: &[(usize, usize, u16)]) -> DepthImage {
+        let mut image = DepthImage::new(41, 21, vec![0; 41 * 21]).unwrap();
+        for (column, row, depth) in set {
+            image.millimetres_mut()[row * 41 + column] = *depth;
+        }
+        image
+    }
+
+    #[test]
+    fn the_head_goes_and_a_raised_hand_stays() {
+        let found = extract(&view(), &image(&[(20, 10, 800), (40, 10, 900), (20, 12, 1050), (3, 3, 1700)])).unwrap();
+        assert_eq!(found, [Pixel { column: 40, row: 10, depth: 900 }, Pixel { column: 20, row: 12, depth: 1050 }]);
+    }
+
+    #[test]
+    fn what_was_there_without_the_person_goes() {
+        let empty = image(&[(5, 5, 1200), (6, 5, 1200)]);
+        let seen = image(&[(5, 5, 1195), (6, 5, 1100), (7, 5, 1100)]);
+        let found = extract(&View { empty: Some(&empty), ..view() }, &seen).unwrap();
+        assert_eq!(found.iter().map(|pixel| pixel.column).collect::<Vec<_>>(), [6, 7]);
+    }
+
+    #[test]
+    fn a_person_who_faces_the_upper_edge_is_turned_and_a_point_keeps_its_place_but_for_signs() {
+        let view = View { facing: Facing::UpperEdge, ..view() };
+        let found = extract(&view, &image(&[(5, 4, 1200)])).unwrap();
+        assert_eq!(found, [Pixel { column: 35, row: 16, depth: 1200 }]);
+        let turned = view.probe_camera(41, 21).point(35.0, 16.0, 1.2);
+        let straight = view.camera.point(5.0, 4.0, 1.2);
+        assert!((turned.x + straight.x).abs() < 1e-12 && (turned.y + straight.y).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_blind_image_a_wrong_empty_scene_and_a_neck_out_of_sight_are_refused() {
+        assert_eq!(extract(&view(), &image(&[])), Err(ViewError::Depth(DepthError::Blind)));
+        let small = DepthImage::new(2, 2, vec![1; 4]).unwrap();
+        let seen = image(&[(1, 1, 1000)]);
+        assert!(matches!(
+            extract(&View { empty: Some(&small), ..view() }, &seen),
+            Err(ViewError::Depth(DepthError::Mismatch { .. }))
+        ));
+        for depth in [f64::NAN, -1.0, 0.0, 20.0] {
+            let view = View { neck: Point::new(0.0, 0.0, depth), ..view() };
+            assert!(matches!(extract(&view, &seen), Err(ViewError::Neck { .. })));
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! From a depth image to joints: each pixel's leaves vote for where the joints are, and the densest place of the votes wins.
+//!
+//! This finds centres of joints, not skin, and elbows and wrists besides the thesis' four parts; on the same tree it errs by less
+//! than half of the thesis' mean of pixels. A joint without enough of its own pixels near the place found is not seen: `None`.
+//! Buffers are kept from frame to frame, so a frame costs no allocation once the first has been seen.
+
+mod mode;
+
+use super::camera::Intrinsics;
+use super::depth::DepthImage;
+use super::foreground::{Facing, Pixel, View, ViewError};
+use super::part::{CLASSES, NONE, OTHER, Part, parts_of};
+use super::probe::ProbeImage;
+use super::tree::{Forest, NO_VOTE, VOTED, vote_index};
+use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide, Side};
+use crate::geometry::{Point, Pose, Vector};
+use crate::time::Stamp;
+use mode::{ModeFinder, VotePoint};
+use nalgebra::Matrix3;
+
+/// Every second column and row votes: neighbours tell the same.
+const VOTING_STEP: u16 = 2;
+/// A pixel whose leaves give a joint's parts less than this share has no say about it.
+const LEAST_SHARE: f32 = 0.15;
+/// Added to a vote's variance in square metres, so that no single leaf outweighs all others.
+const VARIANCE_FLOOR: f32 = 2e-4;
+/// Pixels of a joint's parts count as its own within this distance, in metres.
+const OWN_RADIUS: f32 = 0.13;
+/// A joint is seen where its own pixels cover this area across the view, in square metres: a square of 16 mm.
+const LEAST_AREA: f32 = 2.5e-4;
+/// Deviation of a joint that is found with certainty, in metres: what remains is mostly a constant for each person.
+const LEAST_DEVIATION: f64 = 0.012;
+
+/// Joints in the camera frame, in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CameraJoints {
+    /// Both arms; a joint that is not seen is `None`.
+    pub arms: PerSide<ArmPose>,
+}
+
+impl CameraJoints {
+    /// The same joints in the robot's `base` frame, from the camera's pose in it.
+    #[must_use]
+    pub fn to_base(&self, camera: &Pose, stamp: Stamp) -> BodyPose {
+        let turn = camera.rotation.to_rotation_matrix();
+        let arms = self.arms.map(|_, arm| {
+            let mut moved = ArmPose::default();
+            for joint in Joint::ALL {
+                moved.set(
+                    joint,
+                    arm.joint(joint).map(|estimate| JointEstimate {
+                        position: camera * estimate.position,
+                        covariance: turn * estimate.covariance * turn.transpose(),
+                        ..*estimate
+                    }),
+                );
+            }
+            moved
+        });
+        BodyPose { stamp, arms, neck: None }
+    }
+}
+
+/// A foreground pixel with what its leaves say.
+#[derive(Clone, Copy, Debug)]
+struct Classified {
+    pixel: Pixel,
+    label: u8,
+}
+
+/// Finds joints in depth images with a forest.
+#[derive(Debug)]
+pub struct PoseFinder {
+    forest: Forest,
+    probe: ProbeImage,
+    pixels: Vec<Pixel>,
+    classified: Vec<Classified>,
+    votes: [Vec<VotePoint>; VOTED],
+    area: [f32; VOTED],
+    modes: ModeFinder,
+    certainty: f64,
+    facing: Facing,
+}
+
+impl PoseFinder {
+    /// A pose finder with a forest.
+    #[must_use]
+    pub fn new(forest: Forest) -> Self {
+        Self {
+            forest,
+            probe: ProbeImage::default(),
+            pixels: Vec::new(),
+            classified: Vec::new(),
+            votes: Default::default(),
+            area: [0.0; VOTED],
+            modes: ModeFinder::default(),
+            certainty: 0.0,
+            facing: Facing::default(),
+        }
+    }
+
+    /// The forest.
+    #[must_use]
+    pub const fn forest(&self) -> &Forest {
+        &self.forest
+    }
+
+    /// How sure the forest was of the last image: the mean share of each pixel's most probable class, from 0 to 1.
+    #[must_use]
+    pub const fn certainty(&self) -> f64 {
+        self.certainty
+    }
+
+    /// Finds the joints in an image.
+    ///
+    /// # Errors
+    /// Where the image or the view cannot be used; never for a joint that is not seen.
+    pub fn find(&mut self, image: &DepthImage, view: &View<'_>) -> Result<CameraJoints, ViewError> {
+        view.extract(image, &mut self.probe, &mut self.pixels)?;
+        self.facing = view.facing;
+        let camera = view.probe_camera(image.width(), image.height());
+        let neck = match view.facing {
+            Facing::LowerEdge => view.neck,
+            Facing::UpperEdge => Point::new(-view.neck.x, -view.neck.y, view.neck.z),
+        };
+        self.classify(&camera);
+        let mut joints = CameraJoints::default();
+        for side in Side::BOTH {
+            for joint in Joint::ALL {
+                let estimate = self.locate(side, joint, &camera, &neck);
+                joints.arms.get_mut(side).set(joint, estimate.map(|found| turned_back(found, view.facing)));
+            }
+        }
+        Ok(joints)
+    }
+
+    /// The most probable part of each pixel of the last image as it came: labels as in [`super::part`], `NONE` elsewhere.
+    pub fn labels(&self, into: &mut Vec<u8>) {
+        let (width, height) = (self.probe.width(), self.probe.height());
+        into.clear();
+        into.resize(width * height, NONE);
+        for found in self.classified.iter().filter(|found| found.label != OTHER) {
+            let index = usize::from(found.pixel.row) * width + usize::from(found.pixel.column);
+            let index = if self.facing == Facing::UpperEdge { width * height - 1 - index } else { index };
+            if let Some(label) = into.get_mut(index) {
+                *label = found.label;
+            }
+        }
+    }
+
+    /// Sends every pixel through every tree; every second one votes.
+    #[expect(clippy::cast_possible_truncation, reason = "a ratio of focal lengths")]
+    fn classify(&mut self, camera: &Intrinsics) {
+        self.classified.clear();
+        self.votes.iter_mut().for_each(Vec::clear);
+        let ratio = (camera.fx / self.forest.focal) as f32;
+        let mut certain = 0_u64;
+        let full = 255 * self.forest.trees().len().max(1);
+        for pixel in &self.pixels {
+            let place = (f32::from(pixel.column), f32::from(pixel.row));
+            let per_metre = 1000.0 / f32::from(pixel.depth) * ratio;
+            let leaf = |tree: &super::tree::Tree| tree.leaf(&self.probe, place, per_metre);
+            let shares = self.forest.shares(self.forest.trees().iter().map(leaf));
+            let (label, share) = most(&shares);
+            certain += u64::from(share);
+            self.classified.push(Classified { pixel: *pixel, label });
+            if pixel.column.is_multiple_of(VOTING_STEP) && pixel.row.is_multiple_of(VOTING_STEP) {
+                let point =
+                    camera.point(f64::from(pixel.column), f64::from(pixel.row), f64::from(pixel.depth) / 1000.0);
+                let shares = shares.map(|share| share as f32 / full as f32);
+                for tree in self.forest.trees() {
+                    let number = leaf(tree);
+                    cast_votes(&mut self.votes, tree.leaf_content(number), &shares, &point);
+                }
+            }
+        }
+        self.certainty = certain as f64 / (full * self.pixels.len().max(1)) as f64;
+    }
+
+    fn locate(&mut self, side: Side, joint: Joint, camera: &Intrinsics, neck: &Point) -> Option<JointEstimate> {
+        let votes = self.votes.get(vote_index(side, joint))?;
+        let mode = self.modes.find(votes, neck)?;
+        let area = self.own_area(side, joint, camera, &mode.place);
+        (area >= LEAST_AREA).then(|| JointEstimate {
+            position: mode.place,
+            covariance: mode.scatter * 0.1 + Matrix3::identity() * LEAST_DEVIATION.powi(2),
+            confidence: mode.share,
+            evidence: Evidence::Seen,
+        })
+    }
+
+    /// How much area the pixels of a joint's parts cover near a place.
+    #[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for metres")]
+    fn own_area(&self, side: Side, joint: Joint, camera: &Intrinsics, place: &Point) -> f32 {
+        let parts = parts_of(joint);
+        let (fx, fy) = (camera.fx as f32, camera.fy as f32);
+        let own = |label: u8| parts.iter().any(|part| part.label(side) == label);
+        let (x, y, z) = (place.x as f32, place.y as f32, place.z as f32);
+        let near = |pixel: &Pixel| {
+            let depth = f32::from(pixel.depth) / 1000.0;
+            let right = (f32::from(pixel.column) - camera.cx as f32) / fx * depth - x;
+            let down = (f32::from(pixel.row) - camera.cy as f32) / fy * depth - y;
+            right * right + down * down + (depth - z) * (depth - z) < OWN_RADIUS * OWN_RADIUS
+        };
+        let pixel_area = |pixel: &Pixel| (f32::from(pixel.depth) / 1000.0).powi(2) / (fx * fy);
+        self.classified
+            .iter()
+            .filter(|found| own(found.label) && near(&found.pixel))
+            .map(|found| pixel_area(&found.pixel))
+            .sum()
+    }
+}
+
+/// The most probable class and its summed share; of equal ones the lowest.
+fn most(shares: &[u32; CLASSES]) -> (u8, u32) {
+    (0_u8..).zip(shares).fold((0, 0), |best, (class, share)| if *share > best.1 { (class, *share) } else { best })
+}
+
+/// Adds a leaf's votes to the lists of the joints that its pixel knows about.
+#[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for metres")]
+fn cast_votes(
+    votes: &mut [Vec<VotePoint>; VOTED],
+    leaf: Option<&super::tree::Leaf>,
+    shares: &[f32; CLASSES],
+    point: &Point,
+) {
+    let Some(leaf) = leaf else { return };
+    for side in Side::BOTH {
+        for joint in Joint::ALL {
+            let index = vote_index(side, joint);
+            let (Some(vote), Some(list)) = (leaf.votes.get(index), votes.get_mut(index)) else { continue };
+            let share: f32 = parts_of(joint)
+                .iter()
+                .map(|part: &Part| shares.get(usize::from(part.label(side))).copied().unwrap_or(0.0))
+                .sum();
+            if share < LEAST_SHARE || vote.deviation == NO_VOTE {
+                continue;
+            }
+            let deviation = f32::from(vote.deviation) / 1000.0;
+            let [x, y, z] = vote.offset.map(|value| f32::from(value) / 1000.0);
+            let depth = point.z as f32;
+            list.push(VotePoint {
+                place: [point.x as f32 + x, point.y as f32 + y, depth + z],
+                weight: share * depth * depth / (deviation * deviation + VARIANCE_FLOOR),
+            });
+        }
+    }
+}
+
+/// An estimate in the camera frame of the image as it came.
+fn turned_back(found: JointEstimate, facing: Facing) -> JointEstimate {
+    if facing == Facing::LowerEdge {
+        return found;
+    }
+    let half_turn = Matrix3::from_diagonal(&Vector::new(-1.0, -1.0, 1.0));
+    JointEstimate {
+        position: Point::from(half_turn * found.position.coords),
+        covariance: half_turn * found.covariance * half_turn,
+        ..found
+    }
+}
