@@ -43,15 +43,20 @@ pub fn waiting_place(shoulder: &Point) -> Point {
     shoulder + WAITING_OFFSET
 }
 
+/// A part of the arms' way with what they keep clear of on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg<'a> {
+    /// What surrounds the arms on this part of the way.
+    pub scene: &'a Scene,
+    /// Where the grippers go in turn (`base`, metres), from where the part before has left them.
+    pub stages: &'a [PerSide<Point>],
+}
+
 /// Start postures (radians) of both arms from which they can go through all stages: straight lines in step from one pair of
 /// points (`base`, metres) to the next, each gripper at one orientation. A gripper whose point stays the same rests.
 ///
-/// Each arm's candidates are followed through all stages and ranked by the room they leave to the joint limits and to the joint
-/// speeds; of the best pairs that keep clear of everything and keep the grippers' distance throughout, the one is taken that leaves
-/// the most room of either kind.
-///
 /// # Errors
-/// A [`MotionRefusal`]: of a candidate's way where no posture of an arm can follow it, or of the best pair where none is clear.
+/// See [`start_postures_for`].
 pub fn start_postures(
     model: &RobotModel,
     scene: &Scene,
@@ -59,9 +64,28 @@ pub fn start_postures(
     orientations: &PerSide<UnitQuaternion<f64>>,
     limits: &MotionLimits,
 ) -> Result<PerSide<JointVector>, MotionRefusal> {
-    let ways = PerSide::from_fn(|side| way(stages, side, orientations.get(side)));
+    start_postures_for(model, &[Leg { scene, stages }], orientations, limits)
+}
+
+/// [`start_postures`] for a way whose surroundings change: the arm of the person that is dressed next is no obstacle any more.
+///
+/// Each arm's candidates are followed through all legs and ranked by the room they leave to the joint limits and to the joint
+/// speeds; of the best pairs that keep clear of everything and keep the grippers' distance throughout, the one is taken that leaves
+/// the most room of either kind.
+///
+/// # Errors
+/// A [`MotionRefusal`]: of a candidate's way where no posture of an arm can follow it, or of the best pair where none is clear.
+pub fn start_postures_for(
+    model: &RobotModel,
+    legs: &[Leg],
+    orientations: &PerSide<UnitQuaternion<f64>>,
+    limits: &MotionLimits,
+) -> Result<PerSide<JointVector>, MotionRefusal> {
+    let stages: Vec<_> = legs.iter().flat_map(|leg| leg.stages.iter().copied()).collect();
+    let ways = PerSide::from_fn(|side| way(&stages, side, orientations.get(side)));
     let spans: Vec<f64> =
         ways.left.lines().zip(ways.right.lines()).map(|(left, right)| left.spans().max(right.spans())).collect();
+    let scenes = scenes_of_knots(legs, &spans);
     let ranked = |side: Side| ranked_candidates(model.arm(side), ways.get(side), &spans, limits);
     let candidates = PerSide { left: ranked(Side::Left)?, right: ranked(Side::Right)? };
     let mut pairs: Vec<_> = candidates
@@ -76,7 +100,7 @@ pub fn start_postures(
         if clear.len() >= PAIRS {
             break;
         }
-        match clearance(model, scene, pair, limits) {
+        match clearance(model, &scenes, pair, limits) {
             Ok(metres) => clear.push((room_of(pair).min(metres / COMFORTABLE), pair)),
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
@@ -85,6 +109,16 @@ pub fn start_postures(
         Some((_, pair)) => Ok(pair.map(|_, candidate| candidate.start)),
         None => Err(refusal.unwrap_or(MotionRefusal::NotFinite { side: Side::Left })),
     }
+}
+
+/// The scene of every knot of the way: a line belongs to the leg that it leads into.
+fn scenes_of_knots<'a>(legs: &[Leg<'a>], spans: &[f64]) -> Vec<&'a Scene> {
+    let mut into = legs.iter().flat_map(|leg| leg.stages.iter().map(|_| leg.scene));
+    let mut scenes: Vec<&Scene> = into.next().into_iter().collect();
+    for (scene, spans) in into.zip(spans) {
+        scenes.extend(std::iter::repeat_n(scene, shares(*spans).count() - 1));
+    }
+    scenes
 }
 
 /// One gripper's poses at all stages.
@@ -117,12 +151,14 @@ fn room_of(pair: &Pair) -> f64 {
 }
 
 /// The least distance in metres that a pair keeps beyond what it has to keep.
-fn clearance(model: &RobotModel, scene: &Scene, pair: &Pair, limits: &MotionLimits) -> Result<f64, MotionRefusal> {
-    let count = pair.left.knots.len();
+fn clearance(model: &RobotModel, scenes: &[&Scene], pair: &Pair, limits: &MotionLimits) -> Result<f64, MotionRefusal> {
     let at = |index: usize| pair.map(|_, candidate| candidate.knots.get(index).copied().unwrap_or(candidate.start));
-    let indices = (0..count).step_by(STRIDE).chain(count.checked_sub(1));
-    indices
-        .map(|index| room_at(model, scene, &at(index), limits))
+    let last = scenes.len().saturating_sub(1);
+    scenes
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| index % STRIDE == 0 || *index == last)
+        .map(|(index, scene)| room_at(model, scene, &at(index), limits))
         .try_fold(f64::INFINITY, |least, room| Ok(least.min(room?)))
 }
 

@@ -430,10 +430,10 @@ impl Trial {
         PerSide::from_fn(|side| if side == first { leading } else { trailing })
     }
 
-    /// Where both grippers are in turn, as far as it is known before the first pass: for a start posture that can follow
-    /// all of it. A gripper that does not move keeps its place.
+    /// Where both grippers are in turn while the first arm is dressed, as far as it is known before the first pass: for a
+    /// start posture that can follow all of it. A gripper that does not move keeps its place.
     #[must_use]
-    pub fn stages(&self) -> Vec<PerSide<Point>> {
+    pub fn first_arm_stages(&self) -> Vec<PerSide<Point>> {
         let first = self.settings.first_arm;
         let waiting = self.waiting_places();
         let mut stages = vec![waiting.map(|side, place| stand_back(side, place)), waiting];
@@ -442,6 +442,15 @@ impl Trial {
             stages.push(PerSide::from_fn(|side| if side == first { *leading } else { trailing }));
         }
         stages
+    }
+
+    /// Where both grippers are in turn while the second arm is dressed: one stays at the shoulder that it has dressed.
+    #[must_use]
+    pub fn second_arm_stages(&self) -> Vec<PerSide<Point>> {
+        let first = self.settings.first_arm;
+        let shoulder = self.strategy(first).path().last().copied().unwrap_or_else(|| self.plan.shoulder(first));
+        let place = |leading: &Point| PerSide::from_fn(|side| if side == first { shoulder } else { *leading });
+        self.strategy(first.other()).path().iter().map(place).collect()
     }
 
     fn move_to(&self, leading: Point, least_seconds: f64) -> Order {

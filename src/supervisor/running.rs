@@ -5,8 +5,8 @@ use super::{Effect, Mode, Supervisor};
 use crate::body::{PerSide, Side};
 use crate::geometry::Point;
 use crate::kinematics::{
-    JointVector, MotionRefusal, PairMotion, Scene, Target, dressing_orientation, plan_pair, plan_postures,
-    start_postures,
+    JointVector, Leg, MotionLimits, MotionRefusal, PairMotion, Scene, Target, dressing_orientation, plan_pair,
+    plan_postures, start_postures_for,
 };
 use crate::safety::Reaction;
 use crate::sequencing::{Order, Stage, Trial, TrialEvent};
@@ -53,22 +53,34 @@ impl Supervisor {
     ) -> Result<PairMotion, MotionRefusal> {
         let mut limits = self.setup.settings.motion.clone();
         limits.minimum_duration = Duration::try_from_secs_f64(least_seconds).unwrap_or_default();
-        let scene = self.scene();
         let trial = self.trial.as_ref();
+        let scene = self.scene(trial.map_or(self.setup.settings.trial.first_arm, Trial::arm));
         if let Some(trial) = trial.filter(|trial| matches!(trial.stage(), Stage::StandBack)) {
-            let orientations = PerSide::from_fn(|_| dressing_orientation());
-            let posture = start_postures(&self.model, &scene, &trial.stages(), &orientations, &limits)?;
+            let posture = self.start_posture(trial, &limits)?;
             return plan_postures(&self.model, &scene, start, &posture.map(|_, joints| Some(*joints)), &limits);
         }
         let targets = targets.map(|_, place| place.map(Target::position));
         plan_pair(&self.model, &scene, start, &targets, &limits)
     }
 
-    /// What the arms keep away from: the person as seen, but for the arms that the garment is led along.
-    fn scene(&self) -> Scene {
+    /// Postures from which both of the person's arms can be dressed; where there are none, from which the first one can:
+    /// the second may be held elsewhere when its turn comes.
+    fn start_posture(&self, trial: &Trial, limits: &MotionLimits) -> Result<PerSide<JointVector>, MotionRefusal> {
+        let first_arm = self.setup.settings.trial.first_arm;
+        let scenes = (self.scene(first_arm), self.scene(first_arm.other()));
+        let stages = (trial.first_arm_stages(), trial.second_arm_stages());
+        let orientations = PerSide::from_fn(|_| dressing_orientation());
+        let first = Leg { scene: &scenes.0, stages: &stages.0 };
+        let second = Leg { scene: &scenes.1, stages: &stages.1 };
+        start_postures_for(&self.model, &[first, second], &orientations, limits)
+            .or_else(|_| start_postures_for(&self.model, &[first], &orientations, limits))
+    }
+
+    /// What the arms keep away from while the person's `arm` is dressed: the person as seen, but for the arms that the
+    /// garment is led along.
+    fn scene(&self, arm: Side) -> Scene {
         let Some(body) = self.body.as_ref() else { return Scene::default() };
         let first = self.setup.settings.trial.first_arm;
-        let arm = self.trial.as_ref().map_or(first, Trial::arm);
         Scene::around(body, &self.setup.build, &PerSide::from_fn(|side| side == arm || side == first))
     }
 
