@@ -203,6 +203,15 @@ impl CommandReceipt {
     pub const fn is_accepted(&self) -> bool {
         matches!(self.outcome, CommandOutcome::Accepted { .. })
     }
+
+    /// Why the command is not carried out; `None` where it is.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&str> {
+        match &self.outcome {
+            CommandOutcome::Accepted { .. } => None,
+            CommandOutcome::Refused { reason } => Some(reason),
+        }
+    }
 }
 
 /// The receipt in one line for a screen or a log.

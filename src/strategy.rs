@@ -116,8 +116,19 @@ pub trait Strategy: Send + fmt::Debug {
     fn arrived(&mut self);
 
     /// Whether a resistance at `position` would be listened to. Problems that can be probed anywhere ask before they
-    /// probe; on a robot contacts come unasked and [`resisted`](Self::resisted) says whether it used them.
+    /// probe.
     fn listens_at(&self, position: &Point) -> bool;
+
+    /// Whether a contact that came unasked at `position`, anywhere on the way, would move anything.
+    fn heeds(&self, position: &Point) -> bool {
+        self.listens_at(position)
+    }
+
+    /// Which share of the thesis' interval between two goals (section 4.4.3: 3 s) a goal takes: 1 where goals are
+    /// way-points, less where a path is drawn with nodes so dense that a pass would take minutes.
+    fn interval_share(&self) -> f64 {
+        1.0
+    }
 
     /// Ends the iteration: moments are averaged, and what was travelled becomes the next path.
     fn finish(&mut self) -> IterationSummary;

@@ -1,7 +1,9 @@
 //! The file of settings: found by XDG, read, never written.
 
-use super::{ConfigError, LoadedProfile, Places, layered, version};
+use super::{ConfigError, LoadedProfile, Places, Profile, layered, version};
+use crate::body::{PerSide, Side};
 use crate::console::ConsoleOptions;
+use crate::modelling::{ArmSpace, FitSettings, MovementSpace};
 use crate::snapshot::Watermark;
 use crate::supervisor::{Setup, SupervisorSettings};
 use serde::{Deserialize, Serialize};
@@ -145,7 +147,7 @@ impl Settings {
         }
         Ok(Setup {
             settings,
-            space: profile.movement_space.clone(),
+            space: movement_space(profile),
             seed,
             watermark,
             profile: profile.pseudonym.clone(),
@@ -176,6 +178,18 @@ impl Settings {
              {outer}\n{core}\n\n{outer_tables}\n\n{core_tables}\n"
         ))
     }
+}
+
+/// The movement space of the profile. A person who is simulated and has none yet moves about first, as a real one does
+/// before the first trial; the seed is fixed, so that it is the same person in every trial.
+fn movement_space(profile: &Profile) -> Option<MovementSpace> {
+    const SEED: u64 = 1;
+    if let Some(space) = &profile.movement_space {
+        return Some(space.clone());
+    }
+    let seen = profile.simulated.as_ref()?.exercise(SEED);
+    let fitted = |side| ArmSpace::fit(seen.get(side), &FitSettings::default(), SEED).ok();
+    Some(MovementSpace { arms: PerSide { left: fitted(Side::Left)?, right: fitted(Side::Right)? } })
 }
 
 #[cfg(test)]

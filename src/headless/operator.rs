@@ -3,7 +3,7 @@
 //! It asks for nothing that an operator could not ask for, and waits for the answer to each act before the next one.
 
 use crate::assembly::RobotState;
-use crate::command::Command;
+use crate::command::{Command, CommandReceipt};
 use crate::snapshot::{Snapshot, TrialPhase};
 use crate::time::Stamp;
 use std::time::Duration;
@@ -11,19 +11,24 @@ use std::time::Duration;
 /// Time between two acts: what a person needs to read what has changed.
 const PAUSE: Duration = Duration::from_millis(500);
 
+/// After so many refusals to start, one each half second, waiting longer will not help.
+const MOST_REFUSALS: u32 = 40;
+
 /// A script in place of a person.
 #[derive(Clone, Debug)]
 pub struct ScriptedOperator {
     last_act: Option<Stamp>,
     continues_left: u32,
     started: bool,
+    refusals: u32,
+    gave_up: Option<String>,
 }
 
 impl ScriptedOperator {
     /// An operator that goes on after at most `continues` holds, and then gives the trial up.
     #[must_use]
     pub const fn new(continues: u32) -> Self {
-        Self { last_act: None, continues_left: continues, started: false }
+        Self { last_act: None, continues_left: continues, started: false, refusals: 0, gave_up: None }
     }
 
     /// What the operator does on seeing this, if anything.
@@ -34,6 +39,12 @@ impl ScriptedOperator {
         let command = self.choose(seen)?;
         self.last_act = Some(seen.now);
         Some(command)
+    }
+
+    /// Why the trial could not be started, once there is no point in asking again.
+    #[must_use]
+    pub fn gave_up(&self) -> Option<&str> {
+        self.gave_up.as_deref()
     }
 
     fn choose(&mut self, seen: &Snapshot) -> Option<Command> {
@@ -57,8 +68,16 @@ impl ScriptedOperator {
         if !robot.enabled {
             return Some(Command::Enable);
         }
-        if self.started && seen.newest_receipt().is_some_and(crate::command::CommandReceipt::is_accepted) {
+        let answer = seen.newest_receipt().filter(|receipt| receipt.command == Command::Start);
+        if self.started && answer.is_some_and(CommandReceipt::is_accepted) {
             return None;
+        }
+        if let Some(reason) = answer.and_then(CommandReceipt::refusal) {
+            self.refusals += 1;
+            if self.refusals >= MOST_REFUSALS {
+                self.gave_up = Some(format!("the trial cannot start: {reason}"));
+                return None;
+            }
         }
         seen.body.pose?;
         self.started = true;
@@ -78,7 +97,8 @@ impl ScriptedOperator {
 mod tests {
     use super::*;
     use crate::body::BodyPose;
-    use crate::snapshot::RobotView;
+    use crate::command::Origin;
+    use crate::snapshot::{ReceiptLine, RobotView};
 
     fn at(milliseconds: u64, phase: TrialPhase, enabled: bool) -> Snapshot {
         let now = Stamp::from_nanoseconds(milliseconds * 1_000_000);
@@ -124,5 +144,18 @@ mod tests {
     #[test]
     fn waiting_is_answered_with_a_go_ahead() {
         assert_eq!(ScriptedOperator::new(0).act(&at(1000, TrialPhase::Waiting, true)), Some(Command::GoAhead));
+    }
+
+    #[test]
+    fn a_start_that_is_refused_again_and_again_is_given_up_with_the_reason() {
+        let mut operator = ScriptedOperator::new(0);
+        for ask in 0..100_u64 {
+            let mut seen = at(1000 + ask * 1000, TrialPhase::Idle, true);
+            let receipt = CommandReceipt::refused(Command::Start, "no movement space");
+            seen.receipts.push(ReceiptLine { stamp: seen.now, origin: Origin::Headless, receipt });
+            let act = operator.act(&seen);
+            assert_eq!(act.is_none(), operator.gave_up().is_some());
+        }
+        assert!(operator.gave_up().is_some_and(|reason| reason.contains("no movement space")));
     }
 }

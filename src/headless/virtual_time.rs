@@ -8,7 +8,7 @@ use crate::command::{Command, Origin};
 use crate::kinematics::{ModelError, RobotModel};
 use crate::sim::world::{SimError, World, WorldSetup};
 use crate::snapshot::{Outcome, Snapshot};
-use crate::supervisor::{Effect, Input, SettingsError, Setup, Supervisor};
+use crate::supervisor::{Effect, Input, LinkEvent, SettingsError, Setup, Supervisor};
 use crate::time::Stamp;
 use std::time::Duration;
 use thiserror::Error;
@@ -91,6 +91,16 @@ impl VirtualTrial {
         self.step(Input::Operator { command, origin: Origin::Headless }, observe)
     }
 
+    /// Something that did not come from the simulated world: news of the link, or a guard's refusal.
+    pub fn feed(&mut self, input: Input) -> Vec<Effect> {
+        self.step(input, &mut |_, _, _| ())
+    }
+
+    /// News of the link to the robot.
+    pub fn tell(&mut self, event: LinkEvent) -> Vec<Effect> {
+        self.feed(Input::Link(event))
+    }
+
     /// One beat: the world moves on, its messages come in, time passes. Returns the effects, setpoints included.
     pub fn beat(&mut self, observe: &mut impl FnMut(Stamp, &Input, &[Effect])) -> Vec<Effect> {
         self.beats += 1;
@@ -132,6 +142,9 @@ impl VirtualTrial {
                 && let Some(command) = operator.act(&self.snapshot())
             {
                 effects.extend(self.ask(command, &mut observe));
+            }
+            if let Some(reason) = operator.gave_up() {
+                return TrialResult { outcome: Outcome::Fault, reason: reason.to_owned() };
             }
             if let Some(result) = effects.iter().find_map(TrialResult::of) {
                 return result;

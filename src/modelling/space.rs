@@ -1,8 +1,9 @@
 //! The movement space of a person: for each arm, where hand, elbow and shoulder can be (thesis section 3.3).
 
+use super::fit::{FitError, FitSettings, fit};
 use super::mixture::Mixture;
 use crate::body::{Joint, PerSide};
-use crate::geometry::Point;
+use crate::geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Where the joints of one arm can be, each joint a mixture of its own as in the thesis.
@@ -18,6 +19,16 @@ pub struct ArmSpace {
 }
 
 impl ArmSpace {
+    /// Fits each joint's mixture to the places where it was seen (hand, elbow, shoulder; metres in `base`).
+    ///
+    /// # Errors
+    /// A [`FitError`] where a joint was never seen or a place is not finite.
+    pub fn fit(seen: &[Vec<Vector>; 3], settings: &FitSettings, seed: u64) -> Result<Self, FitError> {
+        let [hand, elbow, shoulder] = seen;
+        let mixture = |places: &[Vector]| fit(places, settings, seed).map(|fit| fit.mixture);
+        Ok(Self { hand: mixture(hand)?, elbow: mixture(elbow)?, shoulder: mixture(shoulder)? })
+    }
+
     /// The mixture of a joint; `None` where the thesis models none (wrist, forearm, upper arm).
     #[must_use]
     pub const fn joint(&self, joint: Joint) -> Option<&Mixture> {

@@ -219,7 +219,7 @@ impl Trial {
     /// True where resistance at this place of the dressing gripper means something to the strategy.
     #[must_use]
     pub fn listens_at(&self, position: &Point) -> bool {
-        self.listens() && self.strategy(self.arm).listens_at(position)
+        self.listens() && self.strategy(self.arm).heeds(position)
     }
 
     /// True between passes, where another strategy may take over without a half-finished pass.
@@ -293,7 +293,11 @@ impl Trial {
             Stage::Receive => {
                 self.strategy(self.arm).path().first().map_or(Order::Wait, |start| self.move_to(*start, interval))
             }
-            Stage::Pass => self.strategy(self.arm).goal().map_or(Order::Wait, |goal| self.move_to(goal, interval)),
+            Stage::Pass => {
+                let strategy = self.strategy(self.arm);
+                let seconds = interval * strategy.interval_share();
+                strategy.goal().map_or(Order::Wait, |goal| self.move_to(goal, seconds))
+            }
             Stage::Adjust { to } => self.move_to(*to, 0.0),
             Stage::Withdraw { remaining } => remaining.last().map_or(Order::Wait, |place| self.move_to(*place, 0.0)),
             Stage::AwaitGoAhead(_) | Stage::Done => Order::Wait,

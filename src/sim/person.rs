@@ -5,12 +5,14 @@
 
 mod arm;
 mod body;
+mod exercise;
 mod reaction;
 
 #[cfg(test)]
 pub(super) use arm::point_along;
 pub use arm::{ArmAngles, ArmSizes, SimulatedArm};
 pub use body::{BodySizes, Sex};
+pub use exercise::Seen;
 pub use reaction::Response;
 pub(super) use reaction::{Pull, Reaction};
 

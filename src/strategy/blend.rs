@@ -1,6 +1,7 @@
 //! Comfort first, then reach: the kernel step finds the comfort path, one blend moves it towards the movement space, and
 //! one pass more shows what that costs in force.
 
+use super::learner::share_of_dense;
 use super::{
     BlendSettings, Contact, Finish, FixedPath, IterationSummary, LearnedPath, NodeStrategy, Reaction, Strategy,
     StrategyError, StrategyKind,
@@ -102,6 +103,15 @@ impl Strategy for BlendStrategy {
 
     fn listens_at(&self, position: &Point) -> bool {
         self.active().listens_at(position)
+    }
+
+    fn heeds(&self, position: &Point) -> bool {
+        self.active().heeds(position)
+    }
+
+    fn interval_share(&self) -> f64 {
+        // The blended path is drawn through as many points as the path it was made of, or more.
+        self.blended.as_ref().map_or_else(|| self.comfort.interval_share(), |path| share_of_dense(path.path()))
     }
 
     fn finish(&mut self) -> IterationSummary {

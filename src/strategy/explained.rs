@@ -62,6 +62,14 @@ impl Strategy for Explained {
         self.inner.listens_at(position)
     }
 
+    fn heeds(&self, position: &Point) -> bool {
+        self.inner.heeds(position)
+    }
+
+    fn interval_share(&self) -> f64 {
+        self.inner.interval_share()
+    }
+
     fn finish(&mut self) -> IterationSummary {
         let mut summary = self.inner.finish();
         let length = polyline_length(&summary.path);

@@ -146,6 +146,14 @@ impl Pass {
     }
 }
 
+/// Legs of the thesis' path along an arm: five way-points (section 4.4.3).
+const THESIS_LEGS: f64 = 4.0;
+
+/// The share of the interval between goals for a path of dense nodes: the whole path takes as long as the thesis' four legs.
+pub(super) fn share_of_dense(path: &[Point]) -> f64 {
+    (THESIS_LEGS / path.len().saturating_sub(1).max(1) as f64).min(1.0)
+}
+
 /// The path that another strategy learned, or the present one where it learned none.
 pub(super) fn keep_path(present: &[Point], learned: &LearnedPath) -> Vec<Point> {
     if learned.path.len() > 1 { learned.path.clone() } else { present.to_vec() }

@@ -4,7 +4,7 @@
 //! correction does to the other nodes is the [`Correction`]'s business: the kernel step and the Gaussian process differ
 //! in nothing else. The stiffness that turns newtons into metres is learned from what is still felt after a move.
 
-use super::learner::{Pass, clip, finish_of, keep_path};
+use super::learner::{Pass, clip, finish_of, keep_path, share_of_dense};
 use super::{
     Contact, Finish, Ignored, IterationSummary, LearnedPath, LearningSettings, Reaction, Rule, Strategy, StrategyError,
     StrategyKind, WaypointChange,
@@ -218,6 +218,14 @@ impl Strategy for NodeStrategy {
             let at_node = self.goal().is_some_and(|goal| (position - goal).norm() <= AT_NODE);
             at_node && under_way.next + 1 < under_way.nodes.len()
         })
+    }
+
+    fn heeds(&self, position: &Point) -> bool {
+        self.under_way.as_ref().is_some_and(|under_way| self.heard(under_way, position).is_ok())
+    }
+
+    fn interval_share(&self) -> f64 {
+        share_of_dense(self.path())
     }
 
     fn finish(&mut self) -> IterationSummary {

@@ -296,3 +296,18 @@ fn guards_are_off_unless_asked_for_and_then_bound_the_step() {
     assert!(first_move(Guards { maximum_gain: 0.001, ..Guards::default() }).norm() < 0.007);
     assert!(first_move(Guards { bias: 10.0, ..Guards::default() }).norm() < 1e-12);
 }
+
+#[test]
+fn a_path_of_dense_nodes_takes_as_long_as_the_thesis_path_and_heeds_contacts_between_its_nodes() {
+    let context = robot_context(Some(arm_space()));
+    for kind in StrategyKind::ALL {
+        let mut strategy = build(kind, &StrategySettings::default(), &context).unwrap();
+        strategy.begin().unwrap();
+        let legs = strategy.path().len() - 1;
+        let pass = legs as f64 * strategy.interval_share();
+        assert!(pass <= 4.0 + 1e-12, "{kind}: {pass} intervals");
+        let [start, next] = [strategy.path()[0], strategy.goal().unwrap()];
+        let between = start + (next - start) * 0.4;
+        assert!(strategy.heeds(&between), "{kind}");
+    }
+}

@@ -116,6 +116,9 @@ fn follow(arguments: &Arguments, session: &Session, strategy: &str) -> Result<Tr
         if let Some(command) = viewer().and_then(|seen| operator.act(&seen)) {
             ask(command).map_err(Failure::Fault)?;
         }
+        if let Some(reason) = operator.gave_up() {
+            return Ok(TrialResult { outcome: Outcome::Fault, reason: reason.to_owned() });
+        }
     }
     Ok(TrialResult { outcome: Outcome::Fault, reason: "the node was told to end before the trial had ended".into() })
 }

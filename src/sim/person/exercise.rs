@@ -1,0 +1,100 @@
+//! A person who moves the arms as far as they like while nobody dresses them: what a movement space is fitted to.
+//!
+//! Thesis section 3.3 records a person's movement before the first trial. Here the shoulder's and the elbow's angles swing
+//! about the posture in which the person waits for the sleeve, each at a pace of its own, so that the whole range is met.
+
+use super::super::random::{Purpose, Random};
+use super::{ArmAngles, SimulatedPerson};
+use crate::body::{PerSide, Side};
+use crate::geometry::Vector;
+
+/// How long the person moves, in seconds (ours: each angle swings at least five times).
+const SECONDS: f64 = 30.0;
+/// Poses a second, as a depth camera brings them.
+const RATE_HZ: f64 = 30.0;
+/// Half of each swing in degrees: elevation, plane, rotation, elbow (ours: a movement that costs no effort).
+const SWING_DEGREES: [f64; 4] = [8.0, 8.0, 10.0, 10.0];
+/// Swings a second of each angle: their ratios are no fractions of small numbers, so no swing repeats another.
+const PACE_HZ: [f64; 4] = [0.171, 0.233, 0.277, 0.361];
+/// How far the trunk sways, as a standard deviation in metres (ours).
+const SWAY_METRES: f64 = 0.006;
+/// Error of a joint that a camera sees, as a standard deviation in metres along each axis (ours, from the joints found in
+/// simulated depth images).
+const SEEN_METRES: f64 = 0.008;
+
+/// Places of hand, elbow and shoulder in metres in `base`, as a camera saw them.
+pub type Seen = [Vec<Vector>; 3];
+
+impl SimulatedPerson {
+    /// What a camera sees of both arms while the person moves them about; same seed, same places.
+    #[must_use]
+    pub fn exercise(&self, seed: u64) -> PerSide<Seen> {
+        let sizes = self.body.arm_sizes();
+        PerSide::from_fn(|side| {
+            let purpose = if side == Side::Left { Purpose::LeftArm } else { Purpose::RightArm };
+            let mut random = Random::new(seed, purpose);
+            let phases = SWING_DEGREES.map(|_| random.between(0.0, std::f64::consts::TAU));
+            let posture = self.arm(side).posture;
+            let mut seen = Seen::default();
+            for beat in 0..(SECONDS * RATE_HZ) as u32 {
+                let sway = random.normal_vector(SWAY_METRES);
+                let angles = swung(&posture, &phases, f64::from(beat) / RATE_HZ);
+                let places = angles.points(side, &(self.shoulder(side) + sway), &sizes).dressed();
+                for (list, place) in seen.iter_mut().zip(places) {
+                    list.push(place.coords + random.normal_vector(SEEN_METRES));
+                }
+            }
+            seen
+        })
+    }
+}
+
+/// The posture's angles at a moment of the exercise, kept within what people reach.
+fn swung(posture: &ArmAngles, phases: &[f64; 4], seconds: f64) -> ArmAngles {
+    let [elevation, plane, rotation, elbow] = std::array::from_fn(|angle| {
+        let turn = std::f64::consts::TAU * PACE_HZ[angle] * seconds + phases[angle];
+        SWING_DEGREES[angle] * turn.sin()
+    });
+    ArmAngles {
+        elevation_degrees: (posture.elevation_degrees + elevation).clamp(0.0, 180.0),
+        plane_degrees: (posture.plane_degrees + plane).clamp(-90.0, 135.0),
+        rotation_degrees: (posture.rotation_degrees + rotation).clamp(-104.0, 104.0),
+        elbow_degrees: (posture.elbow_degrees + elbow).clamp(0.0, 150.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+
+    #[test]
+    fn the_middle_of_the_exercise_is_the_posture_of_the_profile() {
+        let person = SimulatedPerson::default();
+        let posture = person.posture();
+        for (side, seen) in person.exercise(1).iter() {
+            for (places, wanted) in seen.iter().zip(posture.get(side).dressed()) {
+                assert_eq!(places.len(), 900);
+                let mean = places.iter().sum::<Vector>() / places.len() as f64;
+                assert!((Point::from(mean) - wanted).norm() < 0.02, "{mean} for {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_hand_moves_most_and_the_shoulder_least() {
+        let [hand, elbow, shoulder] = SimulatedPerson::default().exercise(2).right.map(|places| {
+            let mean = places.iter().sum::<Vector>() / places.len() as f64;
+            (places.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / places.len() as f64).sqrt()
+        });
+        assert!(hand > elbow && elbow > shoulder, "{hand} {elbow} {shoulder}");
+        assert!((0.03..0.15).contains(&hand), "{hand}");
+    }
+
+    #[test]
+    fn the_same_seed_brings_the_same_places_and_another_seed_others() {
+        let person = SimulatedPerson::default();
+        assert_eq!(person.exercise(3).left, person.exercise(3).left);
+        assert_ne!(person.exercise(3).left, person.exercise(4).left);
+    }
+}
