@@ -19,6 +19,7 @@ mod plan;
 mod posture;
 mod refusal;
 mod scene;
+mod seeds;
 mod timing;
 
 pub use chain::JOINTS;

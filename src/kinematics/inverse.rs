@@ -6,14 +6,12 @@
 //! No randomness is left when a pose is solved: the same target and seed give the same answer.
 
 use super::JointVector;
-use super::chain::{Chain, Frame, JOINTS};
+use super::chain::Frame;
 use super::damped::{damped_step, projected_step};
-use super::limits::JointLimits;
 use super::model::ArmModel;
+use super::seeds::{Candidates, TABLE_SIZE};
 use crate::geometry::{Finite, Pose};
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector6};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector6};
 use thiserror::Error;
 
 /// Each component of the remaining twist is at most this, in metres and radians.
@@ -30,13 +28,8 @@ const PATIENT_STEPS: usize = 120;
 const PATIENT_ATTEMPTS: usize = 32;
 /// Steps without progress before an attempt is given up.
 const STALLS: usize = 3;
-/// Postures in the table.
-const TABLE_SIZE: usize = 512;
 /// Two solutions are different where a joint differs by more than this, in radians.
 const DIFFERENT: f64 = 0.2;
-/// Metres that count as much as one radian when postures are compared with a target: a quarter of the arm's reach took
-/// the fewest steps.
-const METRES_PER_RADIAN: f64 = 0.25;
 
 /// Why no joint positions were found.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -58,80 +51,6 @@ pub enum InverseError {
         /// The joint positions of that pose, radians.
         nearest: JointVector,
     },
-}
-
-/// Postures to start from, with the pose that each gives.
-#[derive(Debug)]
-pub(super) struct SeedTable {
-    postures: Vec<Posture>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Posture {
-    joints: JointVector,
-    position: Vector3<f64>,
-    orientation: Quaternion<f64>,
-}
-
-impl Posture {
-    fn new(chain: &Chain, joints: JointVector) -> Self {
-        let pose = chain.tip_pose(&joints);
-        Self { joints, position: pose.translation.vector, orientation: *pose.rotation.quaternion() }
-    }
-
-    /// How far a posture is from a target: squared metres, with the turn in them by [`METRES_PER_RADIAN`].
-    fn distance_squared(&self, target: &Pose) -> f64 {
-        // 1 - |q·p| is an eighth of the squared angle for small turns.
-        let turn = 8.0 * (1.0 - self.orientation.dot(target.rotation.quaternion()).abs());
-        (self.position - target.translation.vector).norm_squared() + METRES_PER_RADIAN * METRES_PER_RADIAN * turn
-    }
-}
-
-impl SeedTable {
-    /// Postures drawn uniformly from the joint ranges, always the same ones, and the middle of the ranges.
-    pub(super) fn new(chain: &Chain, limits: &JointLimits) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(0x5eed_7ab1e);
-        let span = limits.upper - limits.lower;
-        let mut postures = vec![Posture::new(chain, limits.middle())];
-        postures.extend((1..TABLE_SIZE).map(|_| {
-            let share = JointVector::from_fn(|_, _| random.random_range(0.0..1.0));
-            Posture::new(chain, limits.lower + share.component_mul(&span))
-        }));
-        Self { postures }
-    }
-}
-
-/// Where attempts start: the given seed and the table, those first whose pose is closest to the target.
-struct Candidates<'a> {
-    costs: [f64; TABLE_SIZE],
-    seed_cost: f64,
-    seed: JointVector,
-    table: &'a SeedTable,
-}
-
-impl<'a> Candidates<'a> {
-    fn new(arm: &'a ArmModel, target: &Pose, seed: JointVector) -> Self {
-        let mut costs = [f64::INFINITY; TABLE_SIZE];
-        for (cost, posture) in costs.iter_mut().zip(&arm.seeds.postures) {
-            *cost = posture.distance_squared(target);
-        }
-        Self { costs, seed_cost: Posture::new(&arm.chain, seed).distance_squared(target), seed, table: &arm.seeds }
-    }
-}
-
-impl Iterator for Candidates<'_> {
-    type Item = JointVector;
-
-    fn next(&mut self) -> Option<JointVector> {
-        let (index, cost) = self.costs.iter_mut().enumerate().min_by(|one, other| one.1.total_cmp(other.1))?;
-        if self.seed_cost <= *cost && self.seed_cost.is_finite() {
-            self.seed_cost = f64::INFINITY;
-            return Some(self.seed);
-        }
-        let posture = self.table.postures.get(index).filter(|_| cost.is_finite())?;
-        *cost = f64::INFINITY;
-        Some(posture.joints)
-    }
 }
 
 /// One attempt's end.
@@ -173,13 +92,11 @@ impl ArmModel {
         let first = self.inverse(target, &self.limits.middle())?;
         let mut found = vec![self.follow(target, &first).unwrap_or(first)];
         let frame = Frame::from_pose(target);
-        let mut seeds: Vec<_> = self.seeds.postures.iter().collect();
-        seeds.sort_by(|one, other| one.distance_squared(target).total_cmp(&other.distance_squared(target)));
-        for seed in seeds {
+        for seed in Candidates::new(self, target, first) {
             if found.len() >= count {
                 break;
             }
-            if let Attempt::Reached(joints) = self.attempt(&frame, seed.joints, PATH_TOLERANCE, STEPS)
+            if let Attempt::Reached(joints) = self.attempt(&frame, seed, PATH_TOLERANCE, STEPS)
                 && found.iter().all(|other| (joints - other).amax() > DIFFERENT)
             {
                 found.push(joints);
@@ -192,7 +109,7 @@ impl ArmModel {
     pub(super) fn free_motion(&self, joints: &JointVector, wanted: &JointVector) -> JointVector {
         let jacobian = self.chain.frames(joints).jacobian();
         let moved = jacobian * wanted;
-        wanted - damped_step(&jacobian, [true; JOINTS], &moved, 1e-4)
+        wanted - damped_step(&jacobian, &moved, 1e-4)
     }
 
     /// One attempt from a seed that is already close: the inner step of path tracking.

@@ -171,18 +171,30 @@ fn ranked_candidates(
     let first = way.0.first().filter(|_| way.0.iter().all(Finite::is_finite));
     let first = first.ok_or(MotionRefusal::NotFinite { side: arm.side() })?;
     let starts = arm.solutions(first, CANDIDATES).map_err(|error| MotionRefusal::unreachable(arm, first, &error))?;
-    let mut refusal = None;
-    let mut candidates = Vec::new();
+    let (mut stuck, mut candidates) = (None, Vec::new());
     for start in starts {
         match follow_way(arm, way, spans, &start, limits) {
             Ok(candidate) => candidates.push(candidate),
-            Err(reason) => refusal = Some(reason),
+            Err(next) => stuck = furthest(stuck, next),
         }
     }
-    match refusal {
-        Some(reason) if candidates.is_empty() => Err(reason),
+    match stuck {
+        Some(Stuck { reason, .. }) if candidates.is_empty() => Err(reason),
         _ => Ok(candidates),
     }
+}
+
+/// Where a candidate could not go on.
+struct Stuck {
+    /// Knots that it had followed before that line.
+    knots: usize,
+    reason: MotionRefusal,
+}
+
+/// The refusal that says most of a way that nobody can follow: the one of whoever came furthest, and of those one that no posture mends.
+fn furthest(before: Option<Stuck>, next: Stuck) -> Option<Stuck> {
+    let rank = |stuck: &Stuck| (stuck.knots, matches!(stuck.reason, MotionRefusal::OutOfReach { .. }));
+    before.filter(|before| rank(before) >= rank(&next)).or(Some(next))
 }
 
 fn follow_way(
@@ -191,7 +203,7 @@ fn follow_way(
     spans: &[f64],
     start: &JointVector,
     limits: &MotionLimits,
-) -> Result<Candidate, MotionRefusal> {
+) -> Result<Candidate, Stuck> {
     let mut knots = vec![*start];
     let mut room = arm.limits().margin(start);
     for (line, spans) in way.lines().zip(spans) {
@@ -200,7 +212,7 @@ fn follow_way(
             knots.extend(std::iter::repeat_n(here, shares(*spans).count() - 1));
             continue;
         }
-        let next = arm.follow_line(&line, &here, *spans)?;
+        let next = arm.follow_line(&line, &here, *spans).map_err(|reason| Stuck { knots: knots.len(), reason })?;
         let pace = limits.speed * spans / line.length.max(f64::EPSILON);
         for (before, after) in next.iter().zip(next.iter().skip(1)) {
             let rate = ((after - before) * pace).abs().component_div(&limits.joint_speed).max();

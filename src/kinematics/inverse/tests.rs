@@ -2,6 +2,8 @@ use super::*;
 use crate::body::Side;
 use crate::kinematics::RobotModel;
 use proptest::prelude::*;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::sync::LazyLock;
 
 static MODEL: LazyLock<RobotModel> = LazyLock::new(|| RobotModel::baxter().unwrap());
