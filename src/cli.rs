@@ -15,6 +15,7 @@ mod export;
 mod fit;
 mod keys;
 mod profile;
+mod recording;
 mod replay;
 mod report;
 mod reproduce;

@@ -266,7 +266,12 @@ impl Supervisor {
                 );
             }
             LinkEvent::RecorderFailed { reason } => {
-                self.hold(now, &format!("the trial is not recorded any more: {reason}"))
+                self.log(now, Level::Error, "recorder", format!("nothing is recorded any more: {reason}"));
+                self.hold(now, &format!("the trial is not recorded any more: {reason}"));
+            }
+            LinkEvent::RecorderOverflow { lost } => {
+                let text = format!("{lost} steps are missing in the record: this computer or its disk is overloaded");
+                self.log(now, Level::Warning, "recorder", text);
             }
             LinkEvent::ConsoleLost => self.hold(now, "the console is gone"),
         }

@@ -2,9 +2,12 @@
 //! that rosbag's own tools accept.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 use valet::headless::{ScriptedOperator, VirtualTrial};
-use valet::record::{Header, JournalError, JournalWriter, Recorder, Replay, Step, read, write_bag, write_csv};
+use valet::record::{
+    Header, JournalError, JournalWriter, Recorder, RecorderNotice, Replay, Step, Told, read, write_bag, write_csv,
+};
 use valet::sim::world::WorldSetup;
 use valet::snapshot::Watermark;
 use valet::supervisor::{Input, Setup};
@@ -152,13 +155,20 @@ fn foreign_and_future_files_are_refused_in_words() {
     assert!(matches!(error, JournalError::Future { found: 9, .. }), "{error}");
 }
 
+/// What a recorder says by itself, gathered.
+fn gathered() -> (Told, Receiver<RecorderNotice>) {
+    let (sender, notices) = channel();
+    (Box::new(move |notice| sender.send(notice).unwrap()), notices)
+}
+
 #[test]
 fn a_full_queue_never_blocks_and_is_told_of() {
     let folder = tempfile::tempdir().unwrap();
     let mut settings = valet::config::RecordingSettings { queue: 4, ..Default::default() };
     settings.least_free_megabytes = 0;
     let header = Header::of(&Setup::default(), "", 0).unwrap();
-    let recorder = Recorder::start(folder.path(), &header, &settings).unwrap();
+    let (told, notices) = gathered();
+    let recorder = Recorder::start(folder.path(), &header, &settings, told).unwrap();
     for index in 0..20_000 {
         recorder.offer(Stamp::from_nanoseconds(index), &Input::Tick, &[]);
     }
@@ -170,15 +180,39 @@ fn a_full_queue_never_blocks_and_is_told_of() {
     assert_eq!(reading.lost, status.lost);
     assert_eq!(reading.steps + reading.lost, 20_001);
     assert_eq!(steps.last().unwrap().number, 20_000);
+    let told: u64 = notices
+        .iter()
+        .map(|notice| match notice {
+            RecorderNotice::Overflowed { lost } => lost,
+            RecorderNotice::Failed { reason } => panic!("{reason}"),
+        })
+        .sum();
+    assert!(told > 0 && told == status.lost, "{told} of {}", status.lost);
 }
 
 #[test]
-fn a_disk_without_space_ends_the_recording_with_its_reason() {
+fn steps_while_recording_is_off_are_a_hole_that_the_journal_tells_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = valet::config::RecordingSettings { least_free_megabytes: 0, ..Default::default() };
+    let header = Header::of(&Setup::default(), "", 0).unwrap();
+    let recorder = Recorder::start(folder.path(), &header, &settings, Box::new(|_| {})).unwrap();
+    for index in 0..30 {
+        recorder.set_on(!(10..20).contains(&index));
+        recorder.offer(Stamp::from_nanoseconds(index), &Input::Tick, &[]);
+    }
+    let status = recorder.finish();
+    let (steps, reading) = steps_of(&status.path);
+    assert_eq!((steps.len(), reading.lost, status.lost), (20, 10, 0));
+    assert_eq!((steps[10].number, steps[10].lost_before), (20, 10));
+}
+
+#[test]
+fn a_disk_without_space_is_refused_with_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     let settings = valet::config::RecordingSettings { least_free_megabytes: u64::MAX >> 21, ..Default::default() };
-    let recorder = Recorder::start(folder.path(), &Header::of(&Setup::default(), "", 0).unwrap(), &settings).unwrap();
-    let status = recorder.finish();
-    assert!(status.failed.unwrap().contains("free on the disk"));
+    let header = Header::of(&Setup::default(), "", 0).unwrap();
+    let error = Recorder::start(folder.path(), &header, &settings, Box::new(|_| {})).unwrap_err().to_string();
+    assert!(error.contains("free on the disk"), "{error}");
 }
 
 #[test]

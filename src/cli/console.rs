@@ -1,6 +1,7 @@
 //! `valet console`: the operator console on a ROS graph.
 
 use super::exit::Failure;
+use super::recording::RecordArguments;
 use super::session::{Opening, Session};
 use crate::config::{LoadedProfile, Places, Settings};
 use crate::console::{ConsoleOptions, ExitReason};
@@ -24,9 +25,8 @@ pub(super) struct Arguments {
     /// Another file of settings than the one that is found.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Record trials into this folder.
-    #[arg(long, value_name = "DIR")]
-    record: Option<PathBuf>,
+    #[command(flatten)]
+    record: RecordArguments,
     /// Decide everything, command nothing.
     #[arg(long)]
     dry_run: bool,
@@ -40,12 +40,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let watermark = if arguments.dry_run { Watermark::DryRun } else { Watermark::Live };
     let mut setup = settings.setup_for(&person, arguments.seed, watermark).map_err(Failure::configuration)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
-    let session = Session::open(Opening {
-        setup,
-        person: &person,
-        record: arguments.record.as_deref(),
-        is_dry_run: arguments.dry_run,
-    })?;
+    let recording = arguments.record.of_trials(&places.trials, settings.recording());
+    let session = Session::open(Opening { setup, person: &person, recording, is_dry_run: arguments.dry_run })?;
     let reason = show(&session, settings.console());
     let recorded = session.close();
     conclude(reason, recorded.as_deref())

@@ -4,14 +4,13 @@ mod wire;
 
 use super::exit::Failure;
 use super::output::Output;
+use super::recording::{RecordArguments, warn};
 use crate::config::{LoadedProfile, Places, Settings};
 use crate::headless::{Report, ScriptedOperator, TrialResult, VirtualTrial};
-use crate::record::{Header, JournalWriter};
 use crate::sim::world::WorldSetup;
 use crate::snapshot::{Outcome, Watermark};
 use crate::strategy::StrategyKind;
 use crate::supervisor::Setup;
-use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How often a run without a screen goes on by itself after a hold before it gives the trial up.
@@ -43,9 +42,8 @@ pub(super) struct Arguments {
     /// Print one JSON object a line.
     #[arg(long)]
     pub(super) json: bool,
-    /// Record the trial into this folder.
-    #[arg(long, value_name = "DIR")]
-    pub(super) record: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) record: RecordArguments,
     /// The port of the simulator's master; the program sets it for itself when it begins anew.
     #[arg(long, hide = true)]
     pub(super) port: Option<u16>,
@@ -61,7 +59,7 @@ impl Default for Arguments {
             strategy: None,
             trials: 1,
             json: false,
-            record: None,
+            record: RecordArguments::default(),
             port: None,
         }
     }
@@ -85,7 +83,7 @@ fn run_in_virtual_time(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<TrialResult, Failure> {
-    let (person, mut setup) = person_and_setup(arguments, seed)?;
+    let (person, mut setup, settings) = person_and_setup(arguments, seed)?;
     if let Some(strategy) = chosen_strategy(arguments)? {
         setup.settings.strategy = strategy;
     }
@@ -98,7 +96,9 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
         ..WorldSetup::default()
     };
     output.line(format!("seed {seed}, strategy {strategy}"))?;
-    let mut journal = arguments.record.as_ref().map(|folder| begin_journal(folder, &setup, &person)).transpose()?;
+    let place = arguments.record.of_demos(&Places::of_this_machine().demos, settings.recording());
+    let journal = place.map(|place| place.write(&setup, &person)).transpose()?;
+    let mut journal = journal.flatten();
     let mut recorded = Ok(());
     let mut trial = VirtualTrial::new(setup, &world).map_err(Failure::configuration)?;
     let mut operator = ScriptedOperator::new(CONTINUES);
@@ -117,7 +117,8 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
     recorded.map_err(Failure::fault)?;
     if let Some(journal) = journal {
         let path = journal.finish().map_err(Failure::fault)?;
-        output.line(format!("recorded in {}", path.display()))?;
+        // Not on stdout: the same seed prints the same bytes there.
+        warn(&format!("recorded in {}", path.display()));
     }
     output.line(format!("the trial is {}: {}", result.outcome.words(), result.reason))?;
     output.event(&result.event(strategy.name(), seed, trial.trial_seconds()))?;
@@ -125,18 +126,13 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
 }
 
 /// The person of the trial and what the core starts with: the file of settings, the profile over it.
-fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, Setup), Failure> {
+fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, Setup, Settings), Failure> {
     let places = Places::of_this_machine();
     let settings = Settings::find(None, &places).map_err(Failure::configuration)?;
     let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
     let person = LoadedProfile::find(name, &places).map_err(Failure::configuration)?;
     let setup = settings.setup_for(&person, seed, Watermark::Demo).map_err(Failure::configuration)?;
-    Ok((person, setup))
-}
-
-fn begin_journal(folder: &Path, setup: &Setup, person: &LoadedProfile) -> Result<JournalWriter, Failure> {
-    let header = Header::of(setup, &person.text, 0).map_err(Failure::Fault)?;
-    JournalWriter::create(folder, &header).map_err(Failure::configuration)
+    Ok((person, setup, settings))
 }
 
 fn print_report(output: &mut Output, report: &Report, seconds: f64) -> Result<(), Failure> {

@@ -40,6 +40,7 @@ struct Summary<'a> {
     lost_steps: u64,
     problems: Vec<String>,
     finished: bool,
+    first_gap: Option<u64>,
     what_if: &'a [String],
     wall_seconds: f64,
 }
@@ -57,6 +58,7 @@ struct DifferenceEvent<'a> {
 struct Tally {
     decisions: u64,
     differences: u64,
+    first_gap: Option<u64>,
     printed: Option<Failure>,
 }
 
@@ -66,7 +68,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let began = Instant::now();
     let mut tally = Tally::default();
     let change = |setup: Setup| changed(setup, &arguments.trial, &layer);
-    let reading = Replay::run(&arguments.trial, change, |_, now, _, effects, difference| {
+    let reading = Replay::run(&arguments.trial, change, |replay, now, _, effects, difference| {
+        tally.first_gap = replay.first_gap();
         tally.decisions += effects.len() as u64;
         let printed = print_step(arguments, &mut output, &mut tally.differences, now.seconds(), effects, difference);
         if let Err(failure) = printed {
@@ -84,6 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         lost_steps: reading.lost,
         problems: reading.problems.iter().map(ToString::to_string).collect(),
         finished: reading.finished,
+        first_gap: tally.first_gap,
         what_if: &arguments.what_if,
         wall_seconds: began.elapsed().as_secs_f64(),
     };
@@ -130,10 +134,13 @@ fn print_summary(output: &mut Output, summary: &Summary<'_>) -> Result<(), Failu
         output.line(format!("not readable: {problem}"))?;
     }
     if !summary.finished {
-        output.line("the journal was not ended in order: everything up to the last second before is there")?;
+        output.line("the journal was not ended in order: all but at most its last second is there")?;
     }
-    if summary.lost_steps > 0 {
-        output.line(format!("{} steps were not recorded because the queue was full", summary.lost_steps))?;
+    if let Some(step) = summary.first_gap {
+        output.line(format!(
+            "steps are missing before step {step} ({} of them were left out by the recorder): what is decided after it may differ",
+            summary.lost_steps
+        ))?;
     }
     output.line(format!(
         "{} steps, {} decisions, {} differences, {:.1} s",

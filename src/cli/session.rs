@@ -3,23 +3,23 @@
 //! Only glue: each part knows none of the others.
 
 use super::exit::Failure;
+use super::recording::Recording;
 use super::sim::ros_failure;
 use crate::assembly::SwitchRequest;
 use crate::body::{PerSide, Side};
-use crate::command::{Command, Origin};
-use crate::config::{LoadedProfile, RecordingSettings};
+use crate::command::{Command, CommandOutcome, CommandReceipt, Origin};
+use crate::config::LoadedProfile;
 use crate::engine::stop::StopThread;
 use crate::engine::{Engine, Inbox, Outlet, SharedSnapshot};
 use crate::kinematics::{JointVector, RobotModel};
-use crate::record::{Header, Recorder};
+use crate::record::{Recorder, RecorderNotice};
 use crate::robot::{GuardSettings, GuardedLimb, GuardedPair};
 use crate::ros::{Commander, LinkSettings, Node, RobotLink, RosLimb, Showing, TopicReport, leave};
 use crate::snapshot::{Freshness, RecorderView, Shared, Snapshot, TopicHealth};
 use crate::supervisor::{Effect, Input, LinkEvent, Setup, Supervisor};
 use crate::time::Stamp;
-use std::path::Path;
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 /// A topic that has been silent for longer is shown as stale; what moves the robot has limits of its own.
 const TOPIC_DEADLINE_SECONDS: f64 = 0.5;
@@ -28,7 +28,8 @@ const TOPIC_DEADLINE_SECONDS: f64 = 0.5;
 pub(super) struct Opening<'a> {
     pub(super) setup: Setup,
     pub(super) person: &'a LoadedProfile,
-    pub(super) record: Option<&'a Path>,
+    /// Where the journal goes; `None` where the operator refused one.
+    pub(super) recording: Option<Recording>,
     pub(super) is_dry_run: bool,
 }
 
@@ -79,6 +80,9 @@ impl Outlet for RobotOutlet {
         }
         if let Some(recorder) = &self.recorder {
             recorder.offer(now, input, effects);
+            if let Some(on) = effects.iter().find_map(recording_asked) {
+                recorder.set_on(on);
+            }
         }
     }
 }
@@ -91,9 +95,6 @@ impl Session {
     pub(super) fn open(opening: Opening<'_>) -> Result<Self, Failure> {
         let model = RobotModel::baxter().map_err(Failure::configuration)?;
         let limits = opening.setup.settings.motion.clone();
-        let recorder = opening.record.map(|folder| start_recorder(folder, &opening)).transpose()?.map(Arc::new);
-        let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
-        let node = Node::start("valet").map_err(ros_failure)?;
         let inbox: Arc<OnceLock<Inbox>> = Arc::default();
         let late = Arc::clone(&inbox);
         let sink = Arc::new(move |input: Input| {
@@ -101,6 +102,13 @@ impl Session {
                 inbox.offer(input);
             }
         });
+        let heard = Arc::clone(&sink);
+        let told = Box::new(move |notice| heard(Input::Link(link_event(notice))));
+        let recorder = opening.recording.as_ref();
+        let recorder = recorder.map(|place| place.start(&opening.setup, opening.person, told)).transpose()?;
+        let recorder = recorder.map(Arc::new);
+        let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
+        let node = Node::start("valet").map_err(ros_failure)?;
         let link =
             RobotLink::connect(&node, LinkSettings { is_dry_run: opening.is_dry_run }, sink).map_err(ros_failure)?;
         let publisher = link.stop_publisher();
@@ -189,11 +197,23 @@ impl Session {
     }
 }
 
-fn start_recorder(folder: &Path, opening: &Opening<'_>) -> Result<Recorder, Failure> {
-    let began = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let began = u64::try_from(began.as_nanos()).unwrap_or_default();
-    let header = Header::of(&opening.setup, &opening.person.text, began).map_err(Failure::Fault)?;
-    Recorder::start(folder, &header, &RecordingSettings::default()).map_err(Failure::configuration)
+/// Whether the operator has just switched recording on or off.
+const fn recording_asked(effect: &Effect) -> Option<bool> {
+    match effect {
+        Effect::Receipt(CommandReceipt {
+            command: Command::SetRecording(on),
+            outcome: CommandOutcome::Accepted { .. },
+        }) => Some(*on),
+        _ => None,
+    }
+}
+
+/// What the recorder says by itself, as the supervisor hears it.
+fn link_event(notice: RecorderNotice) -> LinkEvent {
+    match notice {
+        RecorderNotice::Failed { reason } => LinkEvent::RecorderFailed { reason },
+        RecorderNotice::Overflowed { lost } => LinkEvent::RecorderOverflow { lost },
+    }
 }
 
 /// A topic as the console shows it; the link tells ages, the screen wants moments.
@@ -220,7 +240,7 @@ fn topic_health(now: Stamp, report: &TopicReport) -> TopicHealth {
 fn recorder_view(recorder: &Recorder) -> RecorderView {
     let status = recorder.status();
     RecorderView {
-        on: true,
+        on: status.on,
         file: status.path.display().to_string(),
         bytes: status.bytes,
         drops: status.lost,

@@ -13,12 +13,14 @@ pub struct Places {
     pub profiles: Vec<PathBuf>,
     /// Where trials are recorded unless a folder is given.
     pub trials: PathBuf,
+    /// Where simulated trials are recorded unless a folder is given.
+    pub demos: PathBuf,
 }
 
 impl Places {
     /// The places of this machine and user: `$XDG_CONFIG_HOME/valet/config.toml`, then `/etc/valet/config.toml`; profiles
     /// in `profiles/` here, `$XDG_DATA_HOME/valet/profiles`, `/usr/share/valet/profiles`; trials in
-    /// `$XDG_DATA_HOME/valet/trials`.
+    /// `$XDG_DATA_HOME/valet/trials`, simulated ones in `$XDG_DATA_HOME/valet/demos`.
     #[must_use]
     pub fn of_this_machine() -> Self {
         let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
@@ -31,6 +33,7 @@ impl Places {
             settings: vec![folder("XDG_CONFIG_HOME", ".config").join("config.toml"), "/etc/valet/config.toml".into()],
             profiles: vec!["profiles".into(), data.join("profiles"), "/usr/share/valet/profiles".into()],
             trials: data.join("trials"),
+            demos: data.join("demos"),
         }
     }
 

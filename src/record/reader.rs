@@ -7,7 +7,8 @@ use super::error::{JournalError, Problem};
 use super::writer::{FORMAT, METADATA};
 use mcap::records::{Metadata, Record};
 use std::collections::HashMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 /// What was read of a journal.
@@ -23,12 +24,16 @@ pub struct Reading {
     pub problems: Vec<Problem>,
     /// True where the journal was ended in order; false after a crash.
     pub finished: bool,
+    /// Where the chunk begins that was being written when the recorder was killed, in bytes: up to a second is lost there.
+    pub open_chunk: Option<u64>,
 }
 
 /// The first and last bytes of every MCAP file.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 /// Opcode and length before each record.
 const RECORD_HEAD: usize = 9;
+/// The longest record before the first chunk, in bytes: a profile with its movement space is far below it.
+const LONGEST_HEADER: u64 = 64 << 20;
 /// The opcode of a chunk.
 const CHUNK: u8 = 0x06;
 
@@ -55,6 +60,10 @@ pub fn read(path: &Path, mut visit: impl FnMut(&Header, Step)) -> Result<Reading
                 }
                 offset = end;
             }
+            Err(_) if is_open_chunk(&bytes, offset) => {
+                scan.reading.open_chunk = Some(offset as u64);
+                break;
+            }
             Err(what) => {
                 let next = next_chunk(&bytes, offset + 1);
                 let rest = next.map_or("nothing after it can be read", |_| "reading goes on at the next intact chunk");
@@ -68,6 +77,36 @@ pub fn read(path: &Path, mut visit: impl FnMut(&Header, Step)) -> Result<Reading
         }
     }
     scan.finish(path, &mut visit)
+}
+
+/// Reads a journal's header alone, however long the journal is.
+///
+/// # Errors
+/// [`JournalError`] where it is no journal of valet, or has a later format.
+pub fn read_header(path: &Path) -> Result<Header, JournalError> {
+    let failed = |source| JournalError::file(path, source);
+    let mut file = BufReader::new(File::open(path).map_err(failed)?);
+    let mut begin = [0; MAGIC.len()];
+    let whole = file.read_exact(&mut begin);
+    if whole.is_err() || begin != *MAGIC {
+        return Err(JournalError::foreign(path, kind_of(&begin)));
+    }
+    let mut head = [0; RECORD_HEAD];
+    while file.read_exact(&mut head).is_ok() {
+        let [opcode, length @ ..] = head;
+        let length = u64::from_le_bytes(length);
+        if opcode == CHUNK || length > LONGEST_HEADER {
+            break;
+        }
+        let mut body = Vec::new();
+        file.by_ref().take(length).read_to_end(&mut body).map_err(failed)?;
+        if let Ok(Record::Metadata(metadata)) = mcap::read::parse_record(opcode, &body)
+            && metadata.name == METADATA
+        {
+            return header_of(path, &metadata);
+        }
+    }
+    Err(JournalError::foreign(path, "it is an MCAP file without valet's header"))
 }
 
 /// The record at an offset: its opcode and body. `None` at the end of the file, an error where there is none.
@@ -88,6 +127,12 @@ fn record_at(bytes: &[u8], offset: usize) -> Option<Result<(u8, &[u8]), String>>
             rest.len().saturating_sub(RECORD_HEAD)
         ))),
     }
+}
+
+/// True where a chunk begins whose length was never filled in: its writer was killed before the chunk was ended.
+fn is_open_chunk(bytes: &[u8], offset: usize) -> bool {
+    let length = bytes.get(offset + 1..offset + RECORD_HEAD);
+    bytes.get(offset) == Some(&CHUNK) && length.is_some_and(|length| length.iter().all(|byte| *byte == 0xff))
 }
 
 /// The offset of the next intact chunk from `start` on.

@@ -29,6 +29,7 @@ pub struct Replay {
     supervisor: Supervisor,
     space: Option<MovementSpace>,
     gap: Option<u64>,
+    expected: u64,
 }
 
 impl Replay {
@@ -41,14 +42,16 @@ impl Replay {
         let model = RobotModel::baxter().map_err(|error| error.to_string())?;
         let space = setup.space.clone();
         let supervisor = Supervisor::new(setup, model).map_err(|error| error.to_string())?;
-        Ok(Self { supervisor, space, gap: None })
+        Ok(Self { supervisor, space, gap: None, expected: 0 })
     }
 
     /// Feeds one step. Returns what is decided now and, where that is not what was recorded, the difference.
     pub fn step(&mut self, step: &Step) -> (Vec<Effect>, Option<Difference>) {
-        if step.lost_before > 0 {
+        // Lost by a full queue or with a damaged chunk: either way the core has not seen what came in.
+        if step.number != self.expected {
             self.gap.get_or_insert(step.number);
         }
+        self.expected = step.number + 1;
         let effects = self.supervisor.step(step.now, &step.input);
         let difference = (!step.decided(&effects)).then(|| Difference {
             step: step.number,
@@ -59,7 +62,7 @@ impl Replay {
         (effects, difference)
     }
 
-    /// The first step after steps that the recorder had to leave out: from there on differences are to be expected.
+    /// The first step after a hole in the journal: from there on differences are to be expected.
     #[must_use]
     pub const fn first_gap(&self) -> Option<u64> {
         self.gap

@@ -21,6 +21,7 @@ pub(super) const METADATA: &str = "valet";
 pub struct JournalWriter {
     path: PathBuf,
     writer: mcap::Writer<BufWriter<File>>,
+    disk: File,
     input: u16,
     effect: u16,
     ros: Vec<u16>,
@@ -46,6 +47,7 @@ impl JournalWriter {
     pub fn create(folder: &Path, header: &Header) -> Result<Self, JournalError> {
         fs::create_dir_all(folder).map_err(|source| JournalError::file(folder, source))?;
         let (path, file) = fresh_file(folder, header)?;
+        let disk = file.try_clone().map_err(|source| JournalError::file(&path, source))?;
         let failed = |error: mcap::McapError| JournalError::container(&path, error);
         let options = mcap::WriteOptions::new()
             .profile("valet")
@@ -68,7 +70,7 @@ impl JournalWriter {
             ros.push(writer.add_channel(schema, channel.topic, "ros1", &details).map_err(failed)?);
         }
         writer.flush().map_err(failed)?;
-        Ok(Self { path, writer, input, effect, ros, next: 0 })
+        Ok(Self { path, writer, disk, input, effect, ros, next: 0 })
     }
 
     /// The file.
@@ -141,6 +143,15 @@ impl JournalWriter {
     /// [`JournalError`] where the disk refuses.
     pub fn flush(&mut self) -> Result<(), JournalError> {
         self.writer.flush().map_err(|error| JournalError::container(&self.path, error))
+    }
+
+    /// Flushes, and waits until the disk has it: from now on it survives the end of this machine's power too.
+    ///
+    /// # Errors
+    /// [`JournalError`] where the disk refuses.
+    pub fn save(&mut self) -> Result<(), JournalError> {
+        self.flush()?;
+        self.disk.sync_data().map_err(|source| JournalError::file(&self.path, source))
     }
 
     /// Ends the journal with its index.

@@ -101,6 +101,11 @@ pub enum LinkEvent {
         /// Why.
         reason: String,
     },
+    /// The recorder's queue was full: the journal has a hole.
+    RecorderOverflow {
+        /// Steps that are missing since the last report.
+        lost: u64,
+    },
     /// The console's process or its terminal is gone.
     ConsoleLost,
 }

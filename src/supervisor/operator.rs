@@ -189,6 +189,12 @@ impl Supervisor {
             self.show_hold(now, "after a stop: continue, withdraw or abort");
             return Ok("the stop is over; the trial holds: continue, withdraw or abort".into());
         }
+        if !self.view.recorder.fault.is_empty() {
+            let fault = &self.view.recorder.fault;
+            return Err(format!(
+                "the trial would not be recorded ({fault}): mend that and start valet again, or start it with --no-record"
+            ));
+        }
         self.may_move(now)?;
         let plan =
             PersonPlan { arms: PerSide { left: self.arm_joints(Side::Left)?, right: self.arm_joints(Side::Right)? } };

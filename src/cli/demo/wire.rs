@@ -4,8 +4,9 @@ use super::{Arguments, CONTINUES, LONGEST_TRIAL, person_and_setup, print_report,
 use crate::cli::console::{choose_strategy, conclude, show};
 use crate::cli::exit::Failure;
 use crate::cli::output::Output;
+use crate::cli::recording::warn;
 use crate::cli::session::{Opening, Session};
-use crate::config::{Places, Settings};
+use crate::config::Places;
 use crate::headless::{Report, ScriptedOperator, TrialResult};
 use crate::ros::{environment, node};
 use crate::snapshot::Outcome;
@@ -78,17 +79,18 @@ fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failur
 }
 
 fn supervise(arguments: &Arguments) -> Result<(), Failure> {
-    let (person, mut setup) = person_and_setup(arguments, arguments.seed)?;
+    let (person, mut setup, settings) = person_and_setup(arguments, arguments.seed)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
     let strategy = setup.settings.strategy;
-    let session =
-        Session::open(Opening { setup, person: &person, record: arguments.record.as_deref(), is_dry_run: false })?;
+    let recording = arguments.record.of_demos(&Places::of_this_machine().demos, settings.recording());
+    let session = Session::open(Opening { setup, person: &person, recording, is_dry_run: false })?;
     if arguments.headless {
         let result = follow(arguments, &session, strategy.name());
-        session.close();
+        if let Some(path) = session.close() {
+            warn(&format!("recorded in {path}"));
+        }
         return verdict(&result?);
     }
-    let settings = Settings::find(None, &Places::of_this_machine()).map_err(Failure::configuration)?;
     let reason = show(&session, settings.console());
     let recorded = session.close();
     conclude(reason, recorded.as_deref())

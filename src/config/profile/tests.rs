@@ -15,7 +15,7 @@ fn complaint(text: &str) -> String {
 }
 
 fn places(folder: &Path) -> Places {
-    Places { settings: vec![], profiles: vec![folder.into()], trials: folder.into() }
+    Places { settings: vec![], profiles: vec![folder.into()], trials: folder.into(), demos: folder.into() }
 }
 
 #[test]
