@@ -180,6 +180,19 @@ pub struct SideView {
     pub progress: Option<f64>,
 }
 
+/// Where a replay stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReplayView {
+    /// Seconds from the beginning of the recorded trial to the moment that is shown.
+    pub position: f64,
+    /// Seconds from its beginning to its end.
+    pub length: f64,
+    /// How much faster than the trial it runs; 1 is the trial's own pace.
+    pub speed: f64,
+    /// True while it stands still.
+    pub paused: bool,
+}
+
 /// Everything that may be seen at one moment. Cloning it copies a few kilobytes and shares the rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
@@ -217,6 +230,9 @@ pub struct Snapshot {
     pub receipts: History<ReceiptLine>,
     /// Steps, resistance, holds and stops on one time axis.
     pub timeline: History<TimelineEvent>,
+    /// Where the replay stands; `None` where no recorded trial is shown.
+    #[serde(default)]
+    pub replay: Option<ReplayView>,
     /// Samples thrown away because a queue was full, since the start.
     pub dropped_samples: u64,
 }

@@ -7,7 +7,7 @@ mod acts;
 mod availability;
 mod moves;
 
-pub(super) use availability::refusal;
+pub(super) use availability::{is_replay, refusal};
 
 use super::dialog::{Answer, Dialog};
 use super::keymap::{Action, Chord, KeyMap, Screen};
@@ -15,6 +15,7 @@ use super::view::{Message, Tier, ViewState};
 use super::{ExitReason, ReplayRequest};
 use crate::command::Command;
 use crate::snapshot::{Snapshot, Watermark};
+use crate::time::Stamp;
 use ratatui::crossterm::event::{KeyEvent, KeyEventKind, MouseEvent, MouseEventKind};
 
 /// What is to be done about an event.
@@ -48,13 +49,14 @@ pub struct App {
     stop_was_latched: bool,
     stop_key_pressed: bool,
     resistances: usize,
+    answered: Option<Stamp>,
 }
 
 impl App {
     /// A console that has seen nothing yet.
     #[must_use]
     pub fn new(keys: KeyMap, view: ViewState) -> Self {
-        Self { keys, view, stop_was_latched: false, stop_key_pressed: false, resistances: 0 }
+        Self { keys, view, stop_was_latched: false, stop_key_pressed: false, resistances: 0, answered: None }
     }
 
     /// Takes a newer snapshot in: a dialog about motion closes when a stop is latched.
@@ -65,6 +67,12 @@ impl App {
         if newly {
             self.close_what_may_move();
         }
+        let answered = snapshot.receipts.last().map(|line| line.stamp);
+        if answered > self.answered && self.view.message.as_ref().is_some_and(|message| !message.refused) {
+            // What was asked is answered: the answer takes the place of the question.
+            self.view.message = None;
+        }
+        self.answered = answered;
         let found = snapshot.sides.left.force.detections.len() + snapshot.sides.right.force.detections.len();
         let rings = newly || found > self.resistances;
         self.resistances = found;
@@ -179,8 +187,13 @@ impl App {
     }
 
     fn send(&mut self, command: Command, snapshot: &Snapshot) -> Vec<Reaction> {
-        if snapshot.watermark == Watermark::Watch {
-            self.complain(format!("{command}: this screen only watches; it can stop and do nothing else"));
+        let deaf = match snapshot.watermark {
+            Watermark::Watch => Some("this screen only watches; it can stop and do nothing else"),
+            Watermark::Replay => Some("a recorded trial: nothing can be asked of it"),
+            Watermark::Live | Watermark::Demo | Watermark::DryRun => None,
+        };
+        if let Some(reason) = deaf {
+            self.complain(format!("{command}: {reason}"));
             return Vec::new();
         }
         self.say(format!("asked: {command}"));

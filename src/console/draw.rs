@@ -7,13 +7,13 @@ mod overlay;
 
 pub(super) use banner::{button, robot_words};
 
-use super::app::refusal;
+use super::app::{is_replay, refusal};
 use super::keymap::{Action, Entry, KeyMap, Screen, TABLE};
 use super::screens;
 use super::theme::{Look, Role};
 use super::view::{Tier, ViewState};
 use super::widgets::text::{line, put, span};
-use crate::snapshot::{RecorderView, Snapshot, TrialPhase, Verdict};
+use crate::snapshot::{RecorderView, ReplayView, Snapshot, TrialPhase, Verdict, Watermark};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -122,6 +122,9 @@ fn state_line<'a>(scene: &Scene<'a>, width: u16) -> Line<'a> {
         spans.push(span(look, Role::Watermark, format!(" {word} ")));
         spans.push(Span::raw(" "));
     }
+    if let Some(replay) = live.replay {
+        spans.push(span(look, Role::Text, replay_words(replay)));
+    }
     if let Some(silence) = scene.view.silence {
         let silence = super::widgets::text::seconds(silence);
         spans.push(span(look, Role::Fault, format!(" {} NO NEWS FROM THE CORE {silence} ", look.glyphs().fault)));
@@ -156,6 +159,11 @@ fn state_line<'a>(scene: &Scene<'a>, width: u16) -> Line<'a> {
         fact(format!("{} dropped", live.dropped_samples), Role::Late);
     }
     Line::from(spans)
+}
+
+fn replay_words(replay: ReplayView) -> String {
+    let state = if replay.paused { "paused" } else { "runs" };
+    format!("{state} {:.1}/{:.1} s x{} ", replay.position, replay.length, replay.speed)
 }
 
 const fn recorder_words(recorder: &RecorderView) -> (&'static str, Role) {
@@ -255,7 +263,9 @@ fn key_line<'a>(scene: &Scene<'a>, width: u16) -> Line<'a> {
         format!("{} {}", scene.keys.first_key(Action::Help), action.entry().map_or("", |entry| entry.short))
     };
     let reserve = hint(Action::Help).len() + 1;
-    let entries = TABLE.iter().filter(|entry| !entry.short.is_empty() && entry.scope.contains(scene.view.screen));
+    let replays = scene.live.watermark == Watermark::Replay;
+    let belongs = |entry: &&Entry| !entry.short.is_empty() && entry.scope.contains(scene.view.screen);
+    let entries = TABLE.iter().filter(belongs).filter(|entry| replays || !is_replay(entry.action));
     let (able, unable): (Vec<&Entry>, Vec<&Entry>) =
         entries.partition(|entry: &&Entry| refusal(entry.action, scene.live).is_none());
     let shown = able.into_iter().map(|entry: &Entry| (entry, None));

@@ -202,3 +202,80 @@ fn letters_of_a_release_or_with_alt_do_nothing() {
     let alt = KeyEvent::new(KeyCode::Char('q'), KeyModifiers::ALT);
     assert_eq!(app.on_key(alt, &live), []);
 }
+
+#[test]
+fn a_key_that_can_do_nothing_now_says_so_and_asks_nothing() {
+    let idle = fixture(Situation::Empty);
+    let live = fixture(Situation::Live);
+    let cases: [(&Snapshot, &str, &str); 7] = [
+        (&idle, "n", "no trial runs"),
+        (&idle, "i", "no trial runs"),
+        (&idle, "p", "no trial runs"),
+        (&live, "n", "nothing waits"),
+        (&live, "W", "hold first"),
+        (&live, "b", "withdraw"),
+        (&live, "E", "enabled already"),
+    ];
+    for (snapshot, typed, words) in cases {
+        let mut app = app(Screen::Trial);
+        assert_eq!(press(&mut app, snapshot, &[typed]), [], "{typed}");
+        assert!(app.view.dialog.is_none(), "{typed}");
+        let message = app.view.message.map(|message| message.text).unwrap_or_default();
+        assert!(message.contains(words), "{typed}: {message}");
+    }
+}
+
+#[test]
+fn an_answer_takes_the_place_of_the_question() {
+    let mut live = fixture(Situation::Live);
+    let mut app = app(Screen::Trial);
+    app.on_snapshot(&live);
+    press(&mut app, &live, &["p"]);
+    assert!(app.view.message.is_some());
+    live.now = live.now + std::time::Duration::from_millis(20);
+    let receipt = crate::command::CommandReceipt::accepted(Command::Hold, "now");
+    live.receipts.push(crate::snapshot::ReceiptLine {
+        stamp: live.now,
+        origin: crate::command::Origin::OperatorKey,
+        receipt,
+    });
+    app.on_snapshot(&live);
+    assert_eq!(app.view.message, None);
+}
+
+#[test]
+fn a_start_names_what_will_move_first() {
+    let mut ready = fixture(Situation::Live);
+    ready.trial.phase = crate::snapshot::TrialPhase::Idle;
+    ready.trial.first_arm = Some(crate::body::Side::Left);
+    let mut app = app(Screen::Trial);
+    press(&mut app, &ready, &["S"]);
+    let screen = text_of(&drawn(&ready, &app.view, COLOUR, (120, 40)));
+    assert!(screen.contains("take the start posture") && screen.contains("left arm first"), "{screen}");
+}
+
+#[test]
+fn the_keys_of_a_replay_drive_it_and_nothing_else_is_asked() {
+    let mut replay = fixture(Situation::Live);
+    replay.watermark = crate::snapshot::Watermark::Replay;
+    let view = crate::snapshot::ReplayView { position: 12.3, length: 140.0, speed: 2.0, paused: true };
+    replay.replay = Some(view);
+    let mut app = app(Screen::Trial);
+    let asked = press(&mut app, &replay, &["p", ".", "{", "}", "<", ">", "E", "S", "W", "t", "r", "o"]);
+    let request = |request| Reaction::Replay(request);
+    assert_eq!(
+        asked,
+        [
+            request(ReplayRequest::PauseOrGoOn),
+            request(ReplayRequest::Step),
+            request(ReplayRequest::Speed(0.5)),
+            request(ReplayRequest::Speed(2.0)),
+            request(ReplayRequest::Seek(-10.0)),
+            request(ReplayRequest::Seek(10.0)),
+        ]
+    );
+    let screen = text_of(&drawn(&replay, &app.view, COLOUR, (120, 40)));
+    assert!(screen.contains("REPLAY") && screen.contains("paused 12.3/140.0 s x2"), "{screen}");
+    let live = text_of(&drawn(&fixture(Situation::Live), &ViewState::default(), COLOUR, (120, 40)));
+    assert!(!live.contains("slower"), "keys of a replay are not offered in a trial: {live}");
+}

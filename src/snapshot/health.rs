@@ -71,6 +71,12 @@ pub struct TopicHealth {
 }
 
 impl TopicHealth {
+    /// True where nobody publishes it and the trial does without it, as with a camera that is not there.
+    #[must_use]
+    pub fn is_absent(&self) -> bool {
+        !self.required && self.freshness.last.is_none()
+    }
+
     /// How the topic does at the moment `now`.
     #[must_use]
     pub fn verdict(&self, now: Stamp) -> Verdict {

@@ -132,6 +132,9 @@ pub struct TrialView {
     pub steps: Shared<Vec<StepRow>>,
     /// The step that each gripper is at, from 1; `None` before the first.
     pub step: PerSide<Option<u32>>,
+    /// The arm that is dressed first.
+    #[serde(default)]
+    pub first_arm: Option<Side>,
     /// The arm that is being dressed.
     pub arm: Option<Side>,
     /// The strategy at work.

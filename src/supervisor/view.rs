@@ -47,6 +47,7 @@ impl Supervisor {
             goals: PerSide::from_fn(|side| step.place(first, side).to_string()),
         });
         self.view.trial.steps = Shared::new(rows.to_vec());
+        self.view.trial.first_arm = Some(first);
     }
 
     pub(super) fn show_force(&mut self, sample: &EndpointSample) {

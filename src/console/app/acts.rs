@@ -157,6 +157,10 @@ fn what_moves(command: &Command, snapshot: &Snapshot) -> String {
         format!(" · {arm} arm, iteration {number} of {}", side.iterations_maximum)
     });
     match command {
+        Command::Start if !trial.phase.is_running() => {
+            let first = trial.first_arm.map_or_else(String::new, |arm| format!("; then the {arm} arm first"));
+            format!("both grippers: take the start posture, back from the person{first}{strategy}")
+        }
         Command::Enable => "both arms: the motors switch on and hold them where they are".into(),
         Command::Disable => "both arms: the motors switch off, the arms may sink".into(),
         Command::Withdraw => {

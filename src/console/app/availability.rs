@@ -14,18 +14,26 @@ pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option
     if snapshot.watermark == Watermark::Watch && asks_the_robot(action) {
         return Some("this screen only watches");
     }
+    if snapshot.watermark == Watermark::Replay && asks_the_robot(action) {
+        // The key that holds a trial pauses a replay.
+        return (action != Action::HoldOrContinue).then_some("a recorded trial: nothing can be asked of it");
+    }
     let phase = snapshot.trial.phase;
-    let stopped = snapshot.stop.phase(snapshot.now) != StopPhase::Clear
-        || snapshot.robot.fresh(snapshot.now).is_some_and(|robot| robot.stopped);
+    let robot = snapshot.robot.fresh(snapshot.now);
+    let stopped = snapshot.stop.phase(snapshot.now) != StopPhase::Clear || robot.is_some_and(|robot| robot.stopped);
     match action {
         Action::Reset => (!stopped).then_some("nothing is stopped"),
         _ if stopped && leaves_a_stop(action) => Some("stopped: reset first"),
         Action::Start if phase.is_running() && phase != TrialPhase::Holding => Some("a trial runs"),
         Action::Start => needs_enabled(snapshot),
-        Action::HoldOrContinue | Action::Withdraw | Action::Abort | Action::FinishAfterThis if !phase.is_running() => {
-            Some("no trial runs")
+        _ if in_a_trial(action) && !phase.is_running() => Some("no trial runs"),
+        Action::GoAhead | Action::NextStep | Action::NextIteration if phase != TrialPhase::Waiting => {
+            Some("nothing waits for it")
         }
-        Action::GoAhead if phase != TrialPhase::Waiting => Some("nothing waits for it"),
+        Action::PreviousStep => Some("a step is undone by withdrawing the garment: hold, then withdraw"),
+        Action::Withdraw if phase != TrialPhase::Holding => Some("hold first"),
+        Action::Enable if robot.is_some_and(|robot| robot.enabled) => Some("enabled already"),
+        Action::Disable if robot.is_some_and(|robot| !robot.enabled) => Some("disabled already"),
         _ if phase.is_running() && prepares(action) => Some("only before a trial"),
         Action::Tare | Action::SignCheck if phase.moves() => Some("only when the arms are still"),
         _ if is_replay(action) && snapshot.watermark != Watermark::Replay => Some("only in a replay"),
@@ -39,6 +47,21 @@ fn needs_enabled(snapshot: &Snapshot) -> Option<&'static str> {
         Some(robot) if !robot.enabled => Some("enable the robot first"),
         Some(_) => None,
     }
+}
+
+/// True for what there is only while a trial runs.
+const fn in_a_trial(action: Action) -> bool {
+    matches!(
+        action,
+        Action::HoldOrContinue
+            | Action::Withdraw
+            | Action::Abort
+            | Action::FinishAfterThis
+            | Action::GoAhead
+            | Action::NextStep
+            | Action::PreviousStep
+            | Action::NextIteration
+    )
 }
 
 /// True for what needs the stop to be reset first.
@@ -61,7 +84,7 @@ const fn prepares(action: Action) -> bool {
     matches!(action, Action::Profile | Action::Garment | Action::FirstArm | Action::RecordMovement)
 }
 
-const fn is_replay(action: Action) -> bool {
+pub(in crate::console) const fn is_replay(action: Action) -> bool {
     matches!(
         action,
         Action::ReplayStep | Action::ReplaySlower | Action::ReplayFaster | Action::ReplayBack | Action::ReplayForward

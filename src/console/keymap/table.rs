@@ -142,10 +142,10 @@ actions! {
         "Emergency stop (software), at once, in every dialog and text field too";
     StopAndQuit "stop_and_quit" ["ctrl-c"], ALL, Immediate, "",
         "Emergency stop (software), then ask whether to quit; a second time quits";
-    HoldOrContinue "hold" ["p"], ALL, Asks, "hold/continue", "Hold at once; when holding, continue (asks first)";
+    HoldOrContinue "hold" ["p"], ALL, Asks, "hold/continue", "Hold at once; when holding, continue (asks first); in a replay: pause or go on";
     GoAhead "go_ahead" ["enter"], TRIAL, Asks, "go ahead", "Answer what the trial waits for: names what will move";
     NextStep "next_step" ["n"], TRIAL, Asks, "next step", "Next step of the table";
-    PreviousStep "previous_step" ["b"], TRIAL, Asks, "", "Previous step of the table";
+    PreviousStep "previous_step" ["b"], TRIAL, Asks, "", "Previous step of the table: by withdrawing the garment";
     NextIteration "next_iteration" ["i"], TRIAL, Asks, "iteration", "Run the next iteration";
     FinishAfterThis "finish" ["I"], TRIAL, None, "finish", "Finish the arm after this iteration";
     Withdraw "withdraw" ["W"], ALL, Asks, "withdraw", "Withdraw the garment along the travelled path";
@@ -197,11 +197,11 @@ actions! {
     PageDown "page_down" ["page-down"], ALL, None, "", "A page down";
     Top "top" ["g", "home"], ALL, None, "", "To the top";
     Bottom "bottom" ["G", "end"], ALL, None, "", "To the bottom; the log follows again";
-    ReplayStep "replay_step" ["."], ALL, None, "", "Replay: one step";
-    ReplaySlower "replay_slower" ["{"], ALL, None, "", "Replay: half the speed";
-    ReplayFaster "replay_faster" ["}"], ALL, None, "", "Replay: twice the speed";
-    ReplayBack "replay_back" ["<"], ALL, None, "", "Replay: ten seconds back";
-    ReplayForward "replay_forward" [">"], ALL, None, "", "Replay: ten seconds on";
+    ReplayStep "replay_step" ["."], ALL, None, "step", "Replay: one step";
+    ReplaySlower "replay_slower" ["{"], ALL, None, "slower", "Replay: half the speed";
+    ReplayFaster "replay_faster" ["}"], ALL, None, "faster", "Replay: twice the speed";
+    ReplayBack "replay_back" ["<"], ALL, None, "back", "Replay: ten seconds back";
+    ReplayForward "replay_forward" [">"], ALL, None, "on", "Replay: ten seconds on";
     Help "help" ["?", "f1"], ALL, None, "help", "This help";
     Back "back" ["esc"], ALL, None, "", "Clear the filter, close the dialog, go back; never stops or starts anything";
     Redraw "redraw" ["ctrl-l"], ALL, None, "", "Draw everything anew";

@@ -88,14 +88,15 @@ fn recorder_line(scene: &Scene<'_>) -> (String, Role) {
 fn topic_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
     let (live, look) = (scene.live, scene.look);
     let mut topics: Vec<&TopicHealth> = live.topics.iter().filter(|topic| scene.view.passes(&topic.name)).collect();
-    topics.sort_by_key(|topic| std::cmp::Reverse(topic.verdict(live.now)));
+    // What is not there and not needed troubles nobody: it stands last.
+    topics.sort_by_key(|topic| (topic.is_absent(), std::cmp::Reverse(topic.verdict(live.now))));
     let heading = format!("Topics: {} of {}, worst first", topics.len(), live.topics.len());
     let mut lines = vec![title(look, heading)];
     let columns = format!(
-        "{:<8}{:<44}{:>7} {:>11} {:>8} {:>7} {:>7} {:>6}",
-        "state", "topic", "rate/s", "expected", "age", "gap", "jitter", "drops"
+        "{:<8}{:<44}{:<4}{:>6} {:>8} {:>7} {:>7} {:>7} {:>5}",
+        "state", "topic", "need", "rate/s", "expected", "age", "gap", "jitter", "drops"
     );
-    lines.push(line(look, Role::Muted, if width >= 100 { format!("{columns}  publisher") } else { columns }));
+    lines.push(line(look, Role::Muted, if width >= 104 { format!("{columns} publisher") } else { columns }));
     let skipped = scene.view.row.min(topics.len().saturating_sub(1));
     lines.extend(topics.into_iter().skip(skipped).map(|topic| topic_line(scene, topic)));
     lines
@@ -104,20 +105,28 @@ fn topic_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
 fn topic_line<'a>(scene: &Scene<'a>, topic: &TopicHealth) -> Line<'a> {
     let (look, now) = (scene.look, scene.live.now);
     let verdict = topic.verdict(now);
-    let (symbol, role) = look.verdict(verdict);
     let none = look.glyphs().none;
-    let expected = format!("{:.0}..{:.0}", topic.expected.0, topic.expected.1);
+    let (symbol, role) = if topic.is_absent() { (look.glyphs().stale, Role::Muted) } else { look.verdict(verdict) };
+    let word = if topic.is_absent() { "none" } else { verdict_word(verdict) };
     let live = verdict < Verdict::Stale;
     let number = |text: String| if live { text } else { none.to_owned() };
     let publishers = if topic.publishers.is_empty() { "nobody".into() } else { topic.publishers.join(" ") };
-    let needed = if topic.required { "" } else { " (optional)" };
+    let needed = if topic.required { "yes" } else { "no" };
     Line::from(vec![
-        span(look, role, format!("{symbol} {:<6}", verdict_word(verdict))),
-        span(look, Role::Text, format!("{:<44}", format!("{}{needed}", topic.name))),
-        span(look, Role::Text, format!("{:>7} {expected:>11} ", number(format!("{:.1}", topic.rate)))),
-        span(look, role, format!("{:>8}", age(&topic.freshness, now, none))),
+        span(look, role, format!("{symbol} {word:<6}")),
+        span(look, Role::Text, format!("{:<44}{needed:<4}", topic.name)),
+        span(look, Role::Text, format!("{:>6} {:>8} ", number(format!("{:.1}", topic.rate)), expected(topic))),
+        span(look, role, format!("{:>7}", age(&topic.freshness, now, none))),
         span(look, Role::Text, format!(" {:>7} {:>7}", number(seconds(topic.gap)), number(seconds(topic.jitter)))),
-        span(look, if topic.drops > 0 { Role::Late } else { Role::Muted }, format!(" {:>6}", topic.drops)),
-        span(look, Role::Muted, format!("  {publishers}")),
+        span(look, if topic.drops > 0 { Role::Late } else { Role::Muted }, format!(" {:>5}", topic.drops)),
+        span(look, Role::Muted, format!(" {publishers}")),
     ])
+}
+
+/// The rates that are expected, in words where any rate is right.
+fn expected(topic: &TopicHealth) -> String {
+    match topic.expected {
+        (least, most) if least <= 0.0 && most.is_infinite() => "any".into(),
+        (least, most) => format!("{least:.0}..{most:.0}"),
+    }
 }

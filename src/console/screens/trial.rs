@@ -51,11 +51,12 @@ pub(super) fn now_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
     if let Some(outcome) = trial.outcome {
         lines.push(line(look, Role::Title, format!("the trial is over: {}", outcome.words())));
     }
-    if !trial.hold_cause.is_empty() {
-        lines.push(line(look, Role::Late, format!("{} holds: {}", look.glyphs().late, trial.hold_cause)));
-    }
-    if !trial.waiting_for.is_empty() {
-        lines.push(line(look, Role::Late, format!("{} waits for you: {}", look.glyphs().late, trial.waiting_for)));
+    let late = look.glyphs().late;
+    for (words, text) in [("holds", &trial.hold_cause), ("waits for you", &trial.waiting_for)] {
+        if !text.is_empty() {
+            let rows = wrap(&format!("{late} {words}: {text}"), width);
+            lines.extend(rows.into_iter().map(|row| line(look, Role::Late, row)));
+        }
     }
     if let Some((strategy, when)) = &trial.strategy_pending {
         lines.push(line(look, Role::Late, format!("strategy {strategy} {when}")));
@@ -84,7 +85,8 @@ pub(super) fn step_words(scene: &Scene<'_>) -> String {
 
 fn step_lines<'a>(scene: &Scene<'a>, wide: bool) -> Vec<Line<'a>> {
     let trial = &scene.live.trial;
-    let mut lines = vec![title(scene.look, "Steps (table 3.1)")];
+    let heading = format!("    {:<36}{}", "left gripper (steps of table 3.1)", "right gripper");
+    let mut lines = vec![title(scene.look, heading)];
     if trial.steps.is_empty() {
         lines.push(line(scene.look, Role::Muted, "no steps yet"));
     }
@@ -99,7 +101,7 @@ fn step_line<'a>(scene: &Scene<'a>, step: &'a StepRow) -> Line<'a> {
         let here = *scene.live.trial.step.get(side) == Some(step.number);
         let role = if here { Role::Focus } else { Role::Muted };
         let mark = if here { scene.look.glyphs().gripper } else { ' ' };
-        span(scene.look, role, format!("{mark} {side:<5} {:<28}", step.goals.get(side)))
+        span(scene.look, role, format!("{mark} {:<34}", step.goals.get(side)))
     };
     let mut spans = vec![span(scene.look, Role::Text, format!("{} ", step.number))];
     spans.extend(Side::BOTH.map(cell));

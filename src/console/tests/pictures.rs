@@ -97,13 +97,15 @@ fn the_stop_state_is_on_every_screen_at_every_size_that_has_room_for_it() {
 fn every_dialog_has_its_picture() {
     let stopped = fixture(Situation::Stopped);
     let live = fixture(Situation::Live);
+    let mut holding = live.clone();
+    holding.trial.phase = crate::snapshot::TrialPhase::Holding;
     let ways: [(&str, &Snapshot, &[&str]); 10] = [
         ("help", &live, &["?"]),
         ("help_search", &live, &["?", "/", "t", "a", "r", "e"]),
         ("note", &live, &["o", "a", "_", "b"]),
         ("filter", &live, &["/", "x"]),
         ("settings", &live, &[","]),
-        ("withdraw", &live, &["W"]),
+        ("withdraw", &holding, &["W"]),
         ("strategies", &live, &["s", "down"]),
         ("quit", &live, &["q"]),
         ("quit_after_stop", &stopped, &["ctrl-c"]),

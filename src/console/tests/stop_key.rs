@@ -71,7 +71,7 @@ fn a_stop_from_elsewhere_closes_the_question_about_motion() {
     let live = fixture(Situation::Live);
     let mut app = app(Screen::Trial);
     app.on_snapshot(&live);
-    press(&mut app, &live, &["W", "y"]);
+    press(&mut app, &live, &["5", "y"]);
     assert!(app.view.dialog.is_some());
     app.on_snapshot(&fixture(Situation::Stopped));
     assert!(app.view.dialog.is_none());

@@ -82,13 +82,10 @@ impl DotGrid {
         }
     }
 
-    /// Puts a glyph on every cell of a dot row that has no dots.
-    pub(in crate::console) fn rule(&mut self, y: usize, glyph: char, role: Role) {
-        let start = y / 4 * self.columns;
-        let row = self.cells.iter().zip(self.glyphs.iter_mut()).skip(start).take(self.columns);
-        for ((dots, _), cell) in row.filter(|((dots, _), cell)| *dots == 0 && cell.is_none()) {
-            debug_assert_eq!(*dots, 0);
-            *cell = Some((glyph, role));
+    /// Draws a horizontal line of every second dot, at the exact height: it stays in sight beside a curve in the same cell.
+    pub(in crate::console) fn rule(&mut self, y: usize, role: Role) {
+        for x in (0..self.width()).step_by(2) {
+            self.dot(x, y, role);
         }
     }
 
@@ -171,13 +168,14 @@ mod tests {
     }
 
     #[test]
-    fn glyphs_lie_on_top_and_rules_only_where_nothing_is() {
+    fn glyphs_lie_on_top_and_a_rule_stays_in_sight_beside_a_curve() {
         let area = Rect::new(0, 0, 3, 1);
         let mut grid = DotGrid::new(area);
-        grid.dot(0, 0, Role::Curve);
-        grid.rule(0, '-', Role::Threshold);
+        grid.rule(0, Role::Threshold);
+        grid.dot(0, 3, Role::Curve);
         grid.glyph((4.0, 1.0), '*', Role::Resistance);
-        assert_eq!(drawn(&grid, area, true), ["'-*"]);
+        assert_eq!(drawn(&grid, area, true), [":'*"]);
+        assert_eq!(drawn(&grid, area, false), ["⡁⠁*"]);
     }
 
     proptest! {
@@ -192,7 +190,7 @@ mod tests {
             grid.line(start, end, Role::Curve);
             grid.glyph(end, '*', Role::Resistance);
             grid.column(usize::from(width), '/', Role::Stale);
-            grid.rule(usize::from(height), '-', Role::Threshold);
+            grid.rule(usize::from(height), Role::Threshold);
             let mut buffer = Buffer::empty(Rect::new(0, 0, 10, 4));
             grid.draw(Look { theme: ThemeName::Mono, ascii: false }, area, &mut buffer);
             prop_assert_eq!(buffer[(0, 0)].symbol(), " ");

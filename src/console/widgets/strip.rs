@@ -79,6 +79,11 @@ impl Strip<'_> {
     fn plot(&self, look: Look, grid: &mut DotGrid) {
         let glyphs = look.glyphs();
         let height = grid.height();
+        // First, so that a cell which the curve shares with a line has the curve's colour.
+        let both = self.threshold.into_iter().flat_map(|threshold| [threshold, -threshold]);
+        for threshold in both.filter(|threshold| *threshold >= self.floor) {
+            grid.rule(self.row(threshold, height), Role::Threshold);
+        }
         for (column, extents) in self.envelope.columns.iter().enumerate() {
             if self.envelope.gaps.get(column).copied().unwrap_or(false) {
                 grid.column(column, glyphs.gap, Role::Stale);
@@ -88,10 +93,6 @@ impl Strip<'_> {
                     grid.dot(column, y, Role::Curve);
                 }
             }
-        }
-        let both = self.threshold.into_iter().flat_map(|threshold| [threshold, -threshold]);
-        for threshold in both.filter(|threshold| *threshold >= self.floor) {
-            grid.rule(self.row(threshold, height), glyphs.dash, Role::Threshold);
         }
         for (column, selected) in self.marks {
             let role = if *selected { Role::Focus } else { Role::Resistance };
@@ -148,7 +149,7 @@ mod tests {
         assert!(rows[0].starts_with("x      0.00"), "{text}");
         assert!(rows[1].contains("10 N") && rows[2].contains("thr  5.0 N"), "{text}");
         assert!(rows[0].ends_with('v'), "{text}");
-        assert!(rows[1].contains('-') && rows[2][13..].contains('-'), "{text}");
+        assert!(rows[1][13..].starts_with("''") && rows[2][13..].starts_with(".."), "{text}");
         assert!(rows[1].contains('|'), "the spike is one piece: {text}");
     }
 
