@@ -13,6 +13,7 @@ mod demo;
 mod doctor;
 mod export;
 mod fit;
+mod images;
 mod keys;
 mod profile;
 mod recording;
@@ -22,6 +23,7 @@ mod reproduce;
 mod session;
 mod shell;
 mod sim;
+mod sim_images;
 mod torture;
 
 use clap::{Parser, Subcommand};

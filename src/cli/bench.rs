@@ -1,6 +1,7 @@
 //! `valet bench`: speeds that matter to a user, measured on this machine.
 
 mod ik;
+mod pose;
 
 use super::exit::Failure;
 
@@ -14,10 +15,12 @@ pub(super) struct Arguments {
 #[derive(Debug, clap::Subcommand)]
 enum Bench {
     Ik(ik::Arguments),
+    Pose(pose::Arguments),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.bench {
         Bench::Ik(arguments) => ik::run(arguments),
+        Bench::Pose(arguments) => pose::run(arguments),
     }
 }

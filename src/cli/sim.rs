@@ -4,6 +4,7 @@
 
 use super::exit::Failure;
 use super::output::Output;
+use super::sim_images;
 use crate::assembly::SwitchRequest;
 use crate::body::Side;
 use crate::config::{LoadedProfile, Places, Profile, Settings};
@@ -16,6 +17,7 @@ use crate::snapshot::Level;
 use crate::time::Stamp;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::os::unix::process::CommandExt;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,6 +46,12 @@ pub(super) struct Arguments {
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
+    /// Instead of a robot: write depth images of simulated people with their truth into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(super) images: Option<PathBuf>,
+    /// With --images: how many.
+    #[arg(long, default_value_t = 20, requires = "images")]
+    pub(super) count: u64,
 }
 
 /// A simulated world behind the robot's topics.
@@ -75,6 +83,9 @@ impl SimulatedRobot for WorldOnTheWire {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.images {
+        return sim_images::write(folder, arguments.count, arguments.seed);
+    }
     let master = match arguments.master {
         MasterChoice::Running => None,
         MasterChoice::Embedded => Some(embedded_master(arguments.port)?),
