@@ -14,6 +14,7 @@ mod doctor;
 mod export;
 mod fit;
 mod images;
+mod key;
 mod keys;
 mod profile;
 mod recording;

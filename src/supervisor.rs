@@ -15,10 +15,12 @@ mod running;
 mod settings;
 mod tuning;
 mod view;
+mod warm;
 
 pub use effect::{Effect, Effects};
 pub use input::{EndpointSample, Input, JointSample, LinkEvent};
 pub use settings::{SettingsError, Setup, SupervisorSettings};
+pub use warm::WarmStart;
 
 use crate::assembly::{RobotState, StopSource, SwitchRequest};
 use crate::body::{BodyPose, PerSide, Side};

@@ -1,6 +1,8 @@
 //! `valet console`: the operator console on a ROS graph.
 
 use super::exit::Failure;
+use super::key::KeyArguments;
+use super::output::Output;
 use super::recording::RecordArguments;
 use super::session::{Opening, Session};
 use crate::config::{LoadedProfile, Places, Settings};
@@ -8,7 +10,7 @@ use crate::console::{ConsoleOptions, ExitReason};
 use crate::snapshot::{Snapshot, Watermark};
 use crate::strategy::StrategyKind;
 use crate::supervisor::Setup;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The operator console on a ROS graph.
 #[derive(Debug, Default, clap::Args)]
@@ -27,6 +29,11 @@ pub(super) struct Arguments {
     config: Option<PathBuf>,
     #[command(flatten)]
     record: RecordArguments,
+    #[command(flatten)]
+    key: KeyArguments,
+    /// Begin with the paths that earlier trials of this person learned.
+    #[arg(long)]
+    warm_start: bool,
     /// Decide everything, command nothing.
     #[arg(long)]
     dry_run: bool,
@@ -36,14 +43,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let places = Places::of_this_machine();
     let settings = Settings::find(arguments.config.as_deref(), &places).map_err(Failure::configuration)?;
     let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
-    let person = LoadedProfile::find(name, &places).map_err(Failure::configuration)?;
+    let key = arguments.key.given()?;
+    let person = LoadedProfile::find_with(name, &places, key.as_ref()).map_err(Failure::configuration)?;
     let watermark = if arguments.dry_run { Watermark::DryRun } else { Watermark::Live };
     let mut setup = settings.setup_for(&person, arguments.seed, watermark).map_err(Failure::configuration)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
+    setup.settings.warm_start |= arguments.warm_start;
     let recording = arguments.record.of_trials(&places.trials, settings.recording());
     let session = Session::open(Opening { setup, person: &person, recording, is_dry_run: arguments.dry_run })?;
     let reason = show(&session, settings.console());
     let recorded = session.close();
+    if let Some(trial) = recorded.as_deref().filter(|_| person.keeps_learned() && !arguments.dry_run) {
+        if let Err(failure) = super::profile::learn(&mut Output::new(false), &person, Path::new(trial), key.as_ref()) {
+            // How the trial ended is what the exit code tells.
+            super::output::complain(&failure);
+        }
+    }
     conclude(reason, recorded.as_deref())
 }
 
@@ -67,7 +82,7 @@ pub(super) fn show(session: &Session, options: &ConsoleOptions) -> Result<ExitRe
 /// Says on leaving where the record is, and turns the reason into an exit code.
 pub(super) fn conclude(reason: Result<ExitReason, Failure>, recorded: Option<&str>) -> Result<(), Failure> {
     if let Some(path) = recorded {
-        super::output::Output::new(false).line(format!("recorded in {path}"))?;
+        Output::new(false).line(format!("recorded in {path}"))?;
     }
     match reason? {
         ExitReason::QuitAfterStop => Err(Failure::OperatorStop("the emergency stop was used".into())),

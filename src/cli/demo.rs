@@ -3,6 +3,7 @@
 mod wire;
 
 use super::exit::Failure;
+use super::key::KeyArguments;
 use super::output::Output;
 use super::recording::{RecordArguments, warn};
 use crate::config::{LoadedProfile, Places, Settings};
@@ -44,6 +45,11 @@ pub(super) struct Arguments {
     pub(super) json: bool,
     #[command(flatten)]
     pub(super) record: RecordArguments,
+    #[command(flatten)]
+    pub(super) key: KeyArguments,
+    /// Begin with the paths that earlier trials of this person learned.
+    #[arg(long)]
+    pub(super) warm_start: bool,
     /// The port of the simulator's master; the program sets it for itself when it begins anew.
     #[arg(long, hide = true)]
     pub(super) port: Option<u16>,
@@ -60,6 +66,8 @@ impl Default for Arguments {
             trials: 1,
             json: false,
             record: RecordArguments::default(),
+            key: KeyArguments::default(),
+            warm_start: false,
             port: None,
         }
     }
@@ -130,8 +138,10 @@ fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, 
     let places = Places::of_this_machine();
     let settings = Settings::find(None, &places).map_err(Failure::configuration)?;
     let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
-    let person = LoadedProfile::find(name, &places).map_err(Failure::configuration)?;
-    let setup = settings.setup_for(&person, seed, Watermark::Demo).map_err(Failure::configuration)?;
+    let key = arguments.key.given()?;
+    let person = LoadedProfile::find_with(name, &places, key.as_ref()).map_err(Failure::configuration)?;
+    let mut setup = settings.setup_for(&person, seed, Watermark::Demo).map_err(Failure::configuration)?;
+    setup.settings.warm_start |= arguments.warm_start;
     Ok((person, setup, settings))
 }
 

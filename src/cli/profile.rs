@@ -1,9 +1,10 @@
 //! `valet profile`: check, show, encrypt, decrypt, export and forget people's data.
 
 use super::exit::Failure;
+use super::key::KeyArguments;
 use super::output::Output;
 use crate::config::{Key, LoadedProfile, Places, Profile, profile_names, read_secret, write_whole};
-use age::secrecy::SecretString;
+use crate::record::{learned_in, read_header};
 use clap::Subcommand;
 use serde::Serialize;
 use std::fs;
@@ -24,11 +25,25 @@ enum Action {
     Check {
         /// Name or file.
         profile: String,
+        #[command(flatten)]
+        key: KeyArguments,
     },
     /// Show a profile in words.
     Show {
         /// Name or file.
         profile: String,
+        #[command(flatten)]
+        key: KeyArguments,
+    },
+    /// Write what a recorded trial has learned into its person's profile, for the next trial to begin with.
+    Learn {
+        /// The journal (`*.mcap`).
+        trial: PathBuf,
+        /// Name or file; the person of the trial where it is not given.
+        #[arg(long)]
+        profile: Option<String>,
+        #[command(flatten)]
+        key: KeyArguments,
     },
     /// Encrypt a profile's file; the plain file is removed.
     Encrypt {
@@ -48,14 +63,16 @@ enum Action {
     Export {
         /// Name or file.
         profile: String,
+        #[command(flatten)]
+        key: KeyArguments,
     },
     /// Erase a person's profile and trials, and print a receipt.
     Forget {
         /// The pseudonym.
         id: String,
-        /// The folder of the trials; the default one where it is not given.
+        /// A folder of trials; may be given more than once. The default ones where it is not given.
         #[arg(long, value_name = "DIR")]
-        trials: Option<PathBuf>,
+        trials: Vec<PathBuf>,
         /// Really erase. Without it, only what would be erased is listed.
         #[arg(long)]
         yes: bool,
@@ -65,33 +82,6 @@ enum Action {
     },
 }
 
-#[derive(Debug, clap::Args)]
-struct KeyArguments {
-    /// A file with an age key.
-    #[arg(long, value_name = "FILE", conflicts_with = "passphrase_file")]
-    key: Option<PathBuf>,
-    /// A file whose first line is the passphrase.
-    #[arg(long, value_name = "FILE")]
-    passphrase_file: Option<PathBuf>,
-}
-
-impl KeyArguments {
-    fn key(&self) -> Result<Key, Failure> {
-        match (&self.key, &self.passphrase_file) {
-            (Some(file), _) => Ok(Key::File(file.clone())),
-            (None, Some(file)) => {
-                let text = fs::read_to_string(file).map_err(|error| named(file, error))?;
-                let phrase = text.lines().next().unwrap_or_default().to_owned();
-                if phrase.len() < 12 {
-                    return Err(named(file, "its first line is shorter than the 12 letters that a passphrase needs"));
-                }
-                Ok(Key::Passphrase(SecretString::from(phrase)))
-            }
-            (None, None) => Err(Failure::Configuration("give a key with --key FILE or --passphrase-file FILE".into())),
-        }
-    }
-}
-
 fn named(path: &Path, reason: impl std::fmt::Display) -> Failure {
     Failure::Configuration(format!("{}: {reason}", path.display()))
 }
@@ -99,21 +89,59 @@ fn named(path: &Path, reason: impl std::fmt::Display) -> Failure {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = Output::new(false);
     let places = Places::of_this_machine();
-    let find = |name: &str| LoadedProfile::find(name, &places).map_err(Failure::configuration);
+    let find = |name: &str, key: &KeyArguments| {
+        LoadedProfile::find_with(name, &places, key.given()?.as_ref()).map_err(Failure::configuration)
+    };
     match &arguments.action {
         Action::List => profile_names(&places).into_iter().try_for_each(|name| output.line(name)),
-        Action::Check { profile } => {
-            let found = find(profile)?;
+        Action::Check { profile, key } => {
+            let found = find(profile, key)?;
             output.line(format!("{}: everything can be used (hash {})", found.path.display(), found.short_hash()))
         }
-        Action::Show { profile } => show(&mut output, &find(profile)?),
-        Action::Encrypt { profile, key } => encrypt(&mut output, &find(profile)?, &key.key()?),
-        Action::Decrypt { file, key } => decrypt(&mut output, file, &key.key()?),
-        Action::Export { profile } => output.line(exported(find(profile)?.profile)?.trim_end()),
+        Action::Show { profile, key } => show(&mut output, &find(profile, key)?),
+        Action::Learn { trial, profile, key } => {
+            let name = match profile {
+                Some(name) => name.clone(),
+                None => read_header(trial).map_err(Failure::configuration)?.profile,
+            };
+            learn(&mut output, &find(&name, key)?, trial, key.given()?.as_ref())
+        }
+        Action::Encrypt { profile, key } => {
+            encrypt(&mut output, &find(profile, &KeyArguments::default())?, &key.needed()?)
+        }
+        Action::Decrypt { file, key } => decrypt(&mut output, file, &key.needed()?),
+        Action::Export { profile, key } => output.line(exported(find(profile, key)?.profile)?.trim_end()),
         Action::Forget { id, trials, yes, json } => {
-            forget(&mut Output::new(*json), &places, id, trials.as_deref().unwrap_or(&places.trials), *yes)
+            let default = [places.trials.clone(), places.demos.clone()];
+            let folders = if trials.is_empty() { &default[..] } else { trials };
+            forget(&mut Output::new(*json), &places, id, folders, *yes)
         }
     }
+}
+
+/// Writes what a journal's trial has learned into a profile, and says what it is.
+pub(super) fn learn(
+    output: &mut Output,
+    person: &LoadedProfile,
+    trial: &Path,
+    key: Option<&Key>,
+) -> Result<(), Failure> {
+    let learned = learned_in(trial).map_err(Failure::configuration)?;
+    if learned.is_empty() {
+        return output.line(format!("{}: no arm was dressed to its end, nothing was learned", trial.display()));
+    }
+    person.add_learned(&learned, key).map_err(Failure::configuration)?;
+    for path in &learned {
+        output.line(format!(
+            "{}: the next trial is offered the {} arm's path ({}, {:.1} N) of {}",
+            person.path.display(),
+            path.side,
+            path.strategy,
+            path.energy_newtons,
+            path.trial
+        ))?;
+    }
+    Ok(())
 }
 
 fn show(output: &mut Output, found: &LoadedProfile) -> Result<(), Failure> {
@@ -182,19 +210,20 @@ struct Receipt<'a> {
     files: Vec<PathBuf>,
 }
 
-fn forget(output: &mut Output, places: &Places, id: &str, trials: &Path, erase: bool) -> Result<(), Failure> {
+fn forget(output: &mut Output, places: &Places, id: &str, trials: &[PathBuf], erase: bool) -> Result<(), Failure> {
     let mut files: Vec<PathBuf> = places
         .profiles
         .iter()
         .flat_map(|folder| [folder.join(format!("{id}.toml")), folder.join(format!("{id}.toml.age"))])
         .filter(|path| path.is_file())
         .collect();
-    files.extend(trials_of(id, trials));
+    files.extend(trials.iter().flat_map(|folder| trials_of(id, folder)));
     if files.is_empty() {
+        let folders: Vec<_> = trials.iter().map(|folder| folder.display().to_string()).collect();
         return Err(Failure::Configuration(format!(
             "nothing is kept under {id}: looked in {} and {}",
             places.profile_folders(),
-            trials.display()
+            folders.join(", ")
         )));
     }
     for path in files.iter().filter(|_| erase) {
@@ -206,21 +235,84 @@ fn forget(output: &mut Output, places: &Places, id: &str, trials: &Path, erase: 
     }
     if erase {
         output.line(format!(
-            "receipt: {} files of {id} were erased; copies elsewhere (backups, exports) are not",
+            "receipt: {} files of {id} were erased; copies elsewhere (backups, exports, reports) are not",
             files.len()
         ))?;
     }
     output.event(&Receipt { event: "forget", id, erased: erase, files })
 }
 
-/// The files in the folder of trials that bear the pseudonym at the beginning of their name.
+/// The journals in a folder that are a person's: by what their header says, whatever they are called now; and all files,
+/// as exports and damaged journals, that bear the pseudonym at the beginning of their name.
 fn trials_of(id: &str, folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    let belongs = |path: &PathBuf| {
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        name.strip_prefix(id).is_some_and(|rest| rest.starts_with("-seed"))
-    };
-    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(belongs).collect();
+    let mut files: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file() && (is_named_after(id, path) || is_journal_of(id, path)))
+        .collect();
     files.sort();
     files
+}
+
+fn is_named_after(id: &str, path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    name.strip_prefix(id).is_some_and(|rest| rest.starts_with("-seed"))
+}
+
+fn is_journal_of(id: &str, path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "mcap")
+        && read_header(path).is_ok_and(|header| header.profile == id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Header, JournalWriter};
+    use crate::supervisor::Setup;
+
+    fn journal(folder: &Path, profile: &str) -> PathBuf {
+        let setup = Setup { profile: profile.into(), ..Setup::default() };
+        JournalWriter::create(folder, &Header::of(&setup, "", 0).unwrap()).unwrap().finish().unwrap()
+    }
+
+    #[test]
+    fn forgetting_a_person_erases_profile_and_journals_under_any_name_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let (profiles, trials) = (folder.path().join("profiles"), folder.path().join("trials"));
+        fs::create_dir_all(&profiles).unwrap();
+        let mine = journal(&trials, "p-01");
+        let renamed = trials.join("monday.mcap");
+        fs::rename(journal(&trials, "p-01"), &renamed).unwrap();
+        let other = journal(&trials, "p-011");
+        fs::write(profiles.join("p-01.toml"), "version = 1\npseudonym = \"p-01\"\n").unwrap();
+        let places = Places {
+            settings: Vec::new(),
+            profiles: vec![profiles.clone()],
+            trials: trials.clone(),
+            demos: folder.path().join("demos"),
+        };
+        let mut output = Output::new(true);
+        let folders = [trials];
+        forget(&mut output, &places, "p-01", &folders, false).unwrap();
+        assert!(mine.exists() && renamed.exists() && profiles.join("p-01.toml").exists());
+        forget(&mut output, &places, "p-01", &folders, true).unwrap();
+        assert!(!mine.exists() && !renamed.exists() && !profiles.join("p-01.toml").exists());
+        assert!(other.exists());
+        let words = forget(&mut output, &places, "p-01", &folders, true).unwrap_err().to_string();
+        assert!(words.contains("nothing is kept under p-01"), "{words}");
+    }
+
+    #[test]
+    fn an_exported_profile_has_no_free_text_and_no_date() {
+        let text = "version = 1\npseudonym = \"p-01\"\nnotes = \"limps after a fall\"\n[consent]\nversion = \"2\"\n\
+            date = \"2026-11-22\"\n[[learned]]\nside = \"left\"\nstrategy = \"force\"\ntrial = \"p-01-of-monday\"\n\
+            energy_newtons = 3.0\nwaypoints = [[0, 0.0, [0.0, 0.0, 0.0]], [1, 1.0, [0.0, 0.0, 0.0]]]\n";
+        let profile = LoadedProfile::parse(Path::new("p-01.toml"), text).unwrap().profile;
+        let exported = exported(profile).unwrap();
+        for word in ["limps", "2026", "monday", "consent"] {
+            assert!(!exported.contains(word), "{word} in {exported}");
+        }
+        assert!(exported.contains("energy_newtons"));
+    }
 }

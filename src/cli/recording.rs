@@ -65,7 +65,7 @@ impl Recording {
         self.make_room();
         let began = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let began = u64::try_from(began.as_nanos()).unwrap_or_default();
-        let header = Header::of(setup, &person.text, began).map_err(Failure::Fault)?;
+        let header = Header::of(setup, text_for_journals(person), began).map_err(Failure::Fault)?;
         Recorder::start(&self.folder, &header, &self.settings, told).map_err(|error| self.refusal(&error))
     }
 
@@ -76,7 +76,7 @@ impl Recording {
     /// Where the folder that the operator named cannot be written to.
     pub(super) fn write(&self, setup: &Setup, person: &LoadedProfile) -> Result<Option<JournalWriter>, Failure> {
         self.make_room();
-        let header = Header::of(setup, &person.text, 0).map_err(Failure::Fault)?;
+        let header = Header::of(setup, text_for_journals(person), 0).map_err(Failure::Fault)?;
         match JournalWriter::create(&self.folder, &header) {
             Ok(journal) => Ok(Some(journal)),
             Err(error) if self.is_asked => Err(Failure::configuration(error)),
@@ -107,6 +107,11 @@ impl Recording {
             let _ = fs::remove_file(path);
         }
     }
+}
+
+/// The profile's text as journals keep it: none where the profile is encrypted at rest, its hash alone tells it then.
+fn text_for_journals(person: &LoadedProfile) -> &str {
+    if person.is_encrypted { "" } else { &person.text }
 }
 
 /// Says something on stderr that must not be overlooked.

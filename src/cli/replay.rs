@@ -1,17 +1,23 @@
 //! `valet replay`: a recorded trial through the same core, every decision compared with the recorded one.
 
+mod screen;
+
 use super::exit::Failure;
 use super::output::Output;
-use crate::config::layered;
+use crate::config::{Places, Settings, layered};
 use crate::headless::Report;
-use crate::record::{Difference, Reading, Replay};
+use crate::record::{Difference, Player, Reading, Replay};
 use crate::supervisor::{Effect, Setup, SupervisorSettings};
 use serde::Serialize;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use toml::Table;
 
-/// A recorded trial through the same core: shows what was decided and names every difference.
+/// A recorded trial through the same core, on the same screen: every decision compared with the recorded one.
+///
+/// Keys on the screen: p pauses and goes on, . goes to the next decision, { and } halve and double the pace, < and > go ten
+/// seconds back and on. Differences stand in the log. Without a terminal the decisions are printed as lines.
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct Arguments {
     /// The journal (`*.mcap`).
@@ -19,6 +25,9 @@ pub(super) struct Arguments {
     /// Only compare: exit code 0 only where every decision is the recorded one and the whole journal could be read.
     #[arg(long)]
     check: bool,
+    /// Print what was decided as lines instead of showing it on a screen.
+    #[arg(long)]
+    headless: bool,
     /// Print one JSON object a line.
     #[arg(long)]
     json: bool,
@@ -65,6 +74,9 @@ struct Tally {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = Output::new(arguments.json);
     let layer = what_if_layer(&arguments.what_if)?;
+    if arguments.is_for_a_screen() {
+        return show(arguments, layer);
+    }
     let began = Instant::now();
     let mut tally = Tally::default();
     let change = |setup: Setup| changed(setup, &arguments.trial, &layer);
@@ -93,6 +105,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     print_summary(&mut output, &summary)?;
     if arguments.check { verdict(&arguments.trial, &reading, tally.differences) } else { Ok(()) }
+}
+
+impl Arguments {
+    fn is_for_a_screen(&self) -> bool {
+        let terminal = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
+        terminal && !self.check && !self.json && !self.headless
+    }
+}
+
+fn show(arguments: &Arguments, layer: Table) -> Result<(), Failure> {
+    let settings = Settings::find(None, &Places::of_this_machine()).map_err(Failure::configuration)?;
+    let trial = arguments.trial.clone();
+    let change = Box::new(move |setup| changed(setup, &trial, &layer));
+    let player = Player::open(&arguments.trial, change).map_err(Failure::configuration)?;
+    screen::show(player, settings.console())
 }
 
 fn print_step(

@@ -53,8 +53,13 @@ pub enum ConfigError {
         /// What is there.
         known: String,
     },
+    /// The file is encrypted, and it was not opened with the key that was given.
+    #[error(transparent)]
+    Secret(#[from] super::SecretError),
     /// The file is encrypted.
-    #[error("{path} is encrypted: give its key with --key FILE, or decrypt it first with `valet profile decrypt`")]
+    #[error(
+        "{path} is encrypted: give its key with --key FILE or --passphrase-file FILE, or decrypt it first with `valet profile decrypt`"
+    )]
     Encrypted {
         /// Which file.
         path: PathBuf,

@@ -4,6 +4,7 @@
 //! person, so a profile is health data: `valet profile encrypt` keeps it encrypted on disk.
 
 mod check;
+mod learn;
 mod load;
 
 pub use load::LoadedProfile;
@@ -70,21 +71,7 @@ pub struct Consent {
 pub type Garment = GarmentSizes;
 
 /// A path that a trial has learned, in coordinates relative to the person's arm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LearnedPath {
-    /// Which arm.
-    pub side: Side,
-    /// Which strategy learned it.
-    pub strategy: StrategyKind,
-    /// The trial that it comes from: the name of its journal.
-    pub trial: String,
-    /// Its energy in the last iteration, in newtons.
-    pub energy_newtons: f64,
-    /// Way-points relative to the arm: part of the arm (0 hand to elbow, 1 elbow to shoulder), share of that part's length,
-    /// and the offset in metres along the part, outwards and upwards.
-    pub waypoints: Vec<crate::planning::ArmRelative>,
-}
+pub type LearnedPath = crate::supervisor::WarmStart;
 
 impl Profile {
     /// The newest version of the format.

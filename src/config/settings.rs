@@ -152,6 +152,7 @@ impl Settings {
             watermark,
             profile: profile.pseudonym.clone(),
             profile_hash: person.short_hash(),
+            warm_start: profile.learned.clone(),
             garment: profile.garment(None).map(|garment| garment.name.clone()).unwrap_or_default(),
             ..Setup::default()
         })

@@ -3,7 +3,7 @@
 use crate::kinematics::BodyBuild;
 use crate::modelling::MovementSpace;
 use crate::snapshot::Watermark;
-use crate::supervisor::{Effect, Input, Setup, SupervisorSettings};
+use crate::supervisor::{Effect, Input, Setup, SupervisorSettings, WarmStart};
 use crate::time::Stamp;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +38,8 @@ pub(super) struct Recipe {
     build: BodyBuild,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     space: Option<MovementSpace>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    warm_start: Vec<WarmStart>,
 }
 
 impl Header {
@@ -47,7 +49,12 @@ impl Header {
     /// # Errors
     /// The reason in words where the setup cannot be written down.
     pub fn of(setup: &Setup, profile_text: &str, began_nanoseconds: u64) -> Result<Self, String> {
-        let recipe = Recipe { settings: setup.settings.clone(), build: setup.build, space: setup.space.clone() };
+        let recipe = Recipe {
+            settings: setup.settings.clone(),
+            build: setup.build,
+            space: setup.space.clone(),
+            warm_start: setup.warm_start.clone(),
+        };
         Ok(Self {
             software: env!("CARGO_PKG_VERSION").to_owned(),
             seed: setup.seed,
@@ -69,6 +76,7 @@ impl Recipe {
         Ok(Setup {
             settings: recipe.settings,
             space: recipe.space,
+            warm_start: recipe.warm_start,
             build: recipe.build,
             seed: header.seed,
             watermark: Watermark::Replay,

@@ -5,7 +5,7 @@ use super::error::JournalError;
 use super::{Reading, read};
 use crate::kinematics::RobotModel;
 use crate::modelling::MovementSpace;
-use crate::supervisor::{Effect, Setup, Supervisor};
+use crate::supervisor::{Effect, Setup, Supervisor, WarmStart};
 use crate::time::Stamp;
 use serde::Serialize;
 use std::path::Path;
@@ -115,4 +115,20 @@ fn in_words(effects: &[Effect]) -> String {
         return "nothing".to_owned();
     }
     serde_json::to_string(effects).unwrap_or_else(|_| format!("{effects:?}"))
+}
+
+/// What a recorded trial has learned, with the journal's name as its source.
+///
+/// # Errors
+/// [`JournalError`] where the journal cannot be read at all.
+pub fn learned_in(path: &Path) -> Result<Vec<WarmStart>, JournalError> {
+    let trial = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let mut learned = Vec::new();
+    read(path, |_, step| {
+        learned.extend(step.effects.into_iter().filter_map(|effect| match effect {
+            Effect::Learned(found) => Some(WarmStart { trial: trial.clone(), ..found }),
+            _ => None,
+        }));
+    })?;
+    Ok(learned)
 }

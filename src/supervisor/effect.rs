@@ -3,6 +3,7 @@
 //! The engine carries effects out through guarded ports and hands them to the recorder. An effect is a decision, not a
 //! deed: whether a setpoint really left the node is told back as an input.
 
+use super::WarmStart;
 use crate::assembly::SwitchRequest;
 use crate::body::Side;
 use crate::command::CommandReceipt;
@@ -66,6 +67,8 @@ pub enum Effect {
         /// Seconds from the first motion of the pass to its end.
         duration_seconds: f64,
     },
+    /// An arm is dressed: what was learned for it.
+    Learned(WarmStart),
     /// The trial ended.
     TrialEnded {
         /// How.

@@ -126,7 +126,7 @@ impl Supervisor {
         };
         self.may_move(now)?;
         if next == Next::SecondArm {
-            self.prepare_second_arm()?;
+            self.prepare_second_arm(now)?;
         }
         let events = self.trial.as_mut().map_or_else(|| Ok(Vec::new()), Trial::go_ahead);
         self.follow(now, events);
@@ -134,10 +134,10 @@ impl Supervisor {
     }
 
     /// The second arm has moved since the trial began: its path is laid out anew from where it is now.
-    fn prepare_second_arm(&mut self) -> Result<(), String> {
+    fn prepare_second_arm(&mut self, now: Stamp) -> Result<(), String> {
         let Some(side) = self.trial.as_ref().map(|trial| trial.arm().other()) else { return Ok(()) };
         let joints = self.arm_joints(side)?;
-        let strategy = self.build_strategy(side, self.strategy, joints)?;
+        let strategy = self.lay_out(now, side, joints)?;
         if let Some(trial) = self.trial.as_mut() {
             trial.lay_out(side, joints, strategy);
         }
@@ -199,8 +199,8 @@ impl Supervisor {
         let plan =
             PersonPlan { arms: PerSide { left: self.arm_joints(Side::Left)?, right: self.arm_joints(Side::Right)? } };
         let strategies = PerSide {
-            left: self.build_strategy(Side::Left, self.strategy, plan.arms.left)?,
-            right: self.build_strategy(Side::Right, self.strategy, plan.arms.right)?,
+            left: self.lay_out(now, Side::Left, plan.arms.left)?,
+            right: self.lay_out(now, Side::Right, plan.arms.right)?,
         };
         self.trial = Some(Trial::new(self.setup.settings.trial.clone(), plan, strategies));
         self.mode = Mode::Running;
@@ -235,6 +235,13 @@ impl Supervisor {
         let space = self.setup.space.as_ref().map(|space| space.arms.get(side).clone());
         let context = ArmContext { initial: joints, space, seed: self.setup.seed };
         strategy::build(kind, &self.setup.settings.strategies, &context).map_err(|error| error.to_string())
+    }
+
+    /// The chosen strategy for an arm whose joints are there, begun with what an earlier trial learned where that is chosen.
+    fn lay_out(&mut self, now: Stamp, side: Side, joints: [Point; 3]) -> Result<Box<dyn Strategy>, String> {
+        let mut strategy = self.build_strategy(side, self.strategy, joints)?;
+        self.start_warm(now, side, strategy.as_mut(), joints);
+        Ok(strategy)
     }
 
     fn obey_strategy(&mut self, now: Stamp, kind: StrategyKind) -> Answer {

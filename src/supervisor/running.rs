@@ -170,6 +170,7 @@ impl Supervisor {
             }
             TrialEvent::ArmDressed { side } => {
                 self.log(now, Level::Information, "trial", format!("the {side} arm is dressed"));
+                self.tell_learned(side);
             }
             TrialEvent::Completed => self.end_trial(now, Outcome::Completed, "both arms are dressed"),
         }

@@ -1,5 +1,6 @@
 //! What a supervisor is set up with: the settings of every room it owns, and the person.
 
+use super::WarmStart;
 use crate::kinematics::{BodyBuild, MotionLimits};
 use crate::modelling::MovementSpace;
 use crate::safety::{GuardSettings, WatchSettings};
@@ -33,6 +34,8 @@ pub struct SupervisorSettings {
     /// How long after a motion has begun resistance is not listened to, in seconds: the arm's own acceleration is in the
     /// signal then (ours; a move reaches its speed within this time).
     pub settling_seconds: f64,
+    /// Whether an arm begins with the path that an earlier trial of this person learned with the same strategy.
+    pub warm_start: bool,
 }
 
 impl Default for SupervisorSettings {
@@ -47,6 +50,7 @@ impl Default for SupervisorSettings {
             guard: GuardSettings::default(),
             watch: WatchSettings::default(),
             settling_seconds: 0.3,
+            warm_start: false,
         }
     }
 }
@@ -68,6 +72,8 @@ pub struct Setup {
     pub settings: SupervisorSettings,
     /// The person's movement space, where the profile has one.
     pub space: Option<MovementSpace>,
+    /// Paths that earlier trials of this person have learned, the newest last.
+    pub warm_start: Vec<WarmStart>,
     /// How thick the person is.
     pub build: BodyBuild,
     /// Seed of everything random.

@@ -15,7 +15,7 @@ struct Tunable {
 
 /// The detector's threshold, the optimiser's step and the speed: what the thesis itself tuned. The upper limits keep the
 /// threshold below the force guard's pause, and a step below what is safe next to a person (0.05 m).
-const TUNABLES: [Tunable; 3] = [
+const TUNABLES: [Tunable; 4] = [
     Tunable { key: "window.threshold_newtons", name: "force threshold", limits: (2.0, 12.0), step: 0.5, unit: "N" },
     Tunable {
         key: "strategies.learning.optimiser.learning_rate",
@@ -25,7 +25,11 @@ const TUNABLES: [Tunable; 3] = [
         unit: "m",
     },
     Tunable { key: "motion.speed", name: "speed", limits: (0.02, 0.10), step: 0.01, unit: "m/s" },
+    Tunable { key: WARM_START, name: "begin with the learned path", limits: (0.0, 1.0), step: 1.0, unit: "(1: yes)" },
 ];
+
+/// Offered only where an earlier trial has learned something.
+const WARM_START: &str = "warm_start";
 
 impl Supervisor {
     fn tunable_value(&self, key: &str) -> f64 {
@@ -33,14 +37,21 @@ impl Supervisor {
         match key {
             "window.threshold_newtons" => settings.window.threshold_newtons,
             "strategies.learning.optimiser.learning_rate" => settings.strategies.learning.optimiser.learning_rate,
+            WARM_START => f64::from(u8::from(settings.warm_start)),
             _ => settings.motion.speed,
         }
+    }
+
+    /// What can be changed for this person.
+    fn tunables(&self) -> impl Iterator<Item = &'static Tunable> + use<> {
+        let is_offered = !self.setup.warm_start.is_empty();
+        TUNABLES.iter().filter(move |tunable| tunable.key != WARM_START || is_offered)
     }
 
     pub(super) fn show_settings(&mut self) {
         let previous: Vec<_> =
             self.view.settings.iter().map(|setting| (setting.key.clone(), setting.previous)).collect();
-        let rows = TUNABLES.iter().map(|tunable| SettingView {
+        let rows = self.tunables().map(|tunable| SettingView {
             key: tunable.key.into(),
             name: tunable.name.into(),
             value: self.tunable_value(tunable.key),
@@ -53,9 +64,9 @@ impl Supervisor {
     }
 
     pub(super) fn obey_setting(&mut self, now: Stamp, key: &str, value: f64) -> Result<String, String> {
-        let tunable = TUNABLES.iter().find(|tunable| tunable.key == key);
+        let tunable = self.tunables().find(|tunable| tunable.key == key);
         let Some(tunable) = tunable else {
-            let known: Vec<_> = TUNABLES.iter().map(|tunable| tunable.key).collect();
+            let known: Vec<_> = self.tunables().map(|tunable| tunable.key).collect();
             return Err(format!("{key} cannot be changed while valet runs; these can: {}", known.join(", ")));
         };
         let (low, high) = tunable.limits;
@@ -72,7 +83,8 @@ impl Supervisor {
             "settings",
             format!("{}: {before} -> {value} {}", tunable.name, tunable.unit),
         );
-        Ok(if key.starts_with("strategies") { "with the next strategy that is laid out" } else { "now" }.into())
+        let laid_out = key.starts_with("strategies") || key == WARM_START;
+        Ok(if laid_out { "with the next strategy that is laid out" } else { "now" }.into())
     }
 
     pub(super) fn obey_undo(&mut self, now: Stamp, key: &str) -> Result<String, String> {
@@ -91,6 +103,7 @@ impl Supervisor {
             "strategies.learning.optimiser.learning_rate" => {
                 self.setup.settings.strategies.learning.optimiser.learning_rate = value
             }
+            WARM_START => self.setup.settings.warm_start = value >= 0.5,
             _ => self.setup.settings.motion.speed = value,
         }
         Ok(())

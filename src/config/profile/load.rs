@@ -1,7 +1,7 @@
 //! Finds, reads and checks a profile.
 
 use super::{Profile, check};
-use crate::config::{ConfigError, Places, builtin, profile_names, version};
+use crate::config::{ConfigError, Key, Places, builtin, profile_names, version};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 use std::fs;
@@ -18,6 +18,8 @@ pub struct LoadedProfile {
     pub hash: String,
     /// Its text.
     pub text: String,
+    /// True where its file is encrypted: what valet writes elsewhere must then not hold its text.
+    pub is_encrypted: bool,
 }
 
 impl LoadedProfile {
@@ -26,12 +28,20 @@ impl LoadedProfile {
     /// # Errors
     /// [`ConfigError`] names the file and the key, or where the profile was looked for.
     pub fn find(name: &str, places: &Places) -> Result<Self, ConfigError> {
+        Self::find_with(name, places, None)
+    }
+
+    /// The same, with the key that opens it where it is encrypted.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the file and the key, or where the profile was looked for.
+    pub fn find_with(name: &str, places: &Places, key: Option<&Key>) -> Result<Self, ConfigError> {
         let as_file = Path::new(name);
         if as_file.components().count() > 1 || as_file.extension().is_some() {
-            return Self::read(as_file);
+            return Self::read(as_file, key);
         }
         if let Some(path) = places.profile_file(name) {
-            return Self::read(&path);
+            return Self::read(&path, key);
         }
         if let Some(text) = builtin::profile(name) {
             return Self::parse(Path::new(&format!("built in/{name}.toml")), text);
@@ -43,18 +53,21 @@ impl LoadedProfile {
         })
     }
 
-    /// Reads a profile's file.
+    /// Reads a profile's file; `key` opens it where it is encrypted.
     ///
     /// # Errors
     /// [`ConfigError`] names the file and the key.
-    pub fn read(path: &Path) -> Result<Self, ConfigError> {
-        let bytes = fs::read(path).map_err(|source| ConfigError::Unreadable { path: path.to_path_buf(), source })?;
-        if bytes.starts_with(b"age-encryption.org/") || bytes.starts_with(b"-----BEGIN AGE") {
-            return Err(ConfigError::Encrypted { path: path.to_path_buf() });
+    pub fn read(path: &Path, key: Option<&Key>) -> Result<Self, ConfigError> {
+        let mut bytes =
+            fs::read(path).map_err(|source| ConfigError::Unreadable { path: path.to_path_buf(), source })?;
+        let is_encrypted = bytes.starts_with(b"age-encryption.org/") || bytes.starts_with(b"-----BEGIN AGE");
+        if is_encrypted {
+            let key = key.ok_or_else(|| ConfigError::Encrypted { path: path.to_path_buf() })?;
+            bytes = key.decrypt(path, &bytes)?;
         }
         let text = String::from_utf8(bytes)
             .map_err(|error| ConfigError::value(path, "encoding", format!("no UTF-8 text: {error}")))?;
-        Self::parse(path, &text)
+        Ok(Self { is_encrypted, ..Self::parse(path, &text)? })
     }
 
     /// Reads a profile from its text; `path` is what errors call it.
@@ -71,7 +84,7 @@ impl LoadedProfile {
         }
         let profile: Profile = toml::from_str(text).map_err(|error| ConfigError::syntax(path, &error))?;
         check::check(&profile).map_err(|(key, reason)| ConfigError::value(path, key, reason))?;
-        Ok(Self { profile, path: path.to_path_buf(), hash: hash_of(text), text: text.to_owned() })
+        Ok(Self { profile, path: path.to_path_buf(), hash: hash_of(text), text: text.to_owned(), is_encrypted: false })
     }
 
     /// The hash, shortened for screens.

@@ -86,9 +86,9 @@ fn an_encrypted_or_foreign_file_is_told_apart() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("p-01.toml.age");
     std::fs::write(&path, "age-encryption.org/v1\n-> scrypt").unwrap();
-    assert!(matches!(LoadedProfile::read(&path), Err(ConfigError::Encrypted { .. })));
+    assert!(matches!(LoadedProfile::read(&path, None), Err(ConfigError::Encrypted { .. })));
     std::fs::write(&path, [0xff, 0xfe, 0x00]).unwrap();
-    assert!(LoadedProfile::read(&path).unwrap_err().to_string().contains("UTF-8"));
+    assert!(LoadedProfile::read(&path, None).unwrap_err().to_string().contains("UTF-8"));
 }
 
 #[test]
