@@ -159,7 +159,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "x").unwrap();
-        let person = LoadedProfile::parse(Path::new("x.toml"), "version = 1\npseudonym = \"x\"\n").unwrap();
+        let person = LoadedProfile::parse(Path::new("x.toml"), "version = 1\npseudonym = \"p-01\"\n").unwrap();
         let place = recording(&RecordArguments::default(), &file.join("demos")).unwrap();
         let error = place.start(&Setup::default(), &person, Box::new(|_| {})).unwrap_err().to_string();
         assert!(error.contains("file/demos") && error.contains("--no-record"), "{error}");

@@ -26,6 +26,16 @@ struct Written {
     page: PathBuf,
 }
 
+/// Trials of several folders may bear the same name: each keeps a page of its own.
+fn name_apart(trial: &mut TrialRecord, others: &[TrialRecord]) {
+    let taken = |name: &str| others.iter().any(|other| other.name == name);
+    let (first, mut number) = (trial.name.clone(), 1);
+    while taken(&trial.name) {
+        number += 1;
+        trial.name = format!("{first}-{number}");
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = Output::new(arguments.json);
     let mut written = |page: PathBuf| {
@@ -34,7 +44,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut trials = Vec::with_capacity(arguments.trials.len());
     for path in &arguments.trials {
-        let trial = TrialRecord::gather(path).map_err(Failure::configuration)?;
+        let mut trial = TrialRecord::gather(path).map_err(Failure::configuration)?;
+        name_apart(&mut trial, &trials);
         written(write(&trial, &arguments.out).map_err(Failure::fault)?)?;
         trials.push(trial);
     }

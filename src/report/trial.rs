@@ -3,10 +3,12 @@
 //! Every number comes from the journal or from the core that replays it; what the journal does not hold is said to be
 //! missing, never filled in.
 
+mod compare;
 mod figures;
 mod page;
 
-pub use page::{compare, write};
+pub use compare::compare;
+pub use page::write;
 
 use crate::body::{Joint, PerSide, Side};
 use crate::command::Command;
@@ -15,7 +17,7 @@ use crate::modelling::MovementSpace;
 use crate::record::{Header, JournalError, Reading, Replay, Step};
 use crate::snapshot::{Detection, EllipseView, ForceSample, Level, Outcome};
 use crate::strategy::{IterationSummary, StrategyKind, WaypointChange};
-use crate::supervisor::{Effect, Input};
+use crate::supervisor::{Effect, EndpointSample, Input};
 use crate::time::Stamp;
 use std::path::{Path, PathBuf};
 
@@ -52,6 +54,8 @@ pub struct Compliance {
 pub struct TrialRecord {
     /// The journal's file.
     pub path: PathBuf,
+    /// What its page and plots are called: the journal's name, numbered where several trials bear the same.
+    pub name: String,
     /// What the trial was run with.
     pub header: Header,
     /// How the journal was read.
@@ -128,7 +132,13 @@ struct Gathering {
     end: Option<(Outcome, String)>,
     compliance: PerSide<[Compliance; 3]>,
     differences: u64,
+    /// Arm and number of the iteration that is under way, and where its gripper went.
+    under_way: Option<(Side, u32)>,
+    travelled: Vec<Point>,
 }
+
+/// The least distance between two places of a travelled path, in metres: finer cannot be told apart on paper.
+const TRAVELLED_APART: f64 = 0.003;
 
 impl Gathering {
     fn step(&mut self, replay: &Replay, now: Stamp, step: &Step, effects: &[Effect]) {
@@ -148,6 +158,7 @@ impl Gathering {
     fn input(&mut self, replay: &Replay, seconds: f64, input: &Input) {
         match input {
             Input::Operator { command: Command::Note(text), .. } => self.notes.push((seconds, text.clone())),
+            Input::Endpoint(sample) => self.travel(replay, sample),
             Input::Body(pose) => {
                 let Some(space) = replay.space() else { return };
                 for side in Side::BOTH {
@@ -155,6 +166,21 @@ impl Gathering {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Follows the gripper that dresses through its iteration, by where the robot says it is.
+    fn travel(&mut self, replay: &Replay, sample: &EndpointSample) {
+        let Some(trial) = replay.supervisor().trial().filter(|trial| trial.arm() == sample.side) else { return };
+        let under_way = Some((trial.arm(), trial.iteration()));
+        if self.under_way != under_way {
+            self.under_way = under_way;
+            self.travelled.clear();
+        }
+        let place = Point::from(sample.pose.translation.vector);
+        let is_apart = self.travelled.last().is_none_or(|last| (place - last).norm() > TRAVELLED_APART);
+        if trial.listens() && is_apart && place.coords.iter().all(|value| value.is_finite()) {
+            self.travelled.push(place);
         }
     }
 
@@ -168,7 +194,7 @@ impl Gathering {
                     summary: summary.clone(),
                     duration_seconds: *duration_seconds,
                     planned: path.planned.to_vec(),
-                    travelled: path.travelled.to_vec(),
+                    travelled: std::mem::take(&mut self.travelled),
                     ellipses: path.ellipses.to_vec(),
                 });
             }
@@ -202,6 +228,7 @@ impl Gathering {
         });
         TrialRecord {
             path: path.to_path_buf(),
+            name: path.file_stem().map_or_else(|| "trial".to_owned(), |stem| stem.to_string_lossy().into_owned()),
             header: reading.header.clone(),
             reading,
             began,

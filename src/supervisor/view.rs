@@ -4,12 +4,14 @@
 //! deadline, so that whoever draws it can tell stale from fresh.
 
 use super::{EndpointSample, LinkEvent, Mode, Supervisor};
-use crate::body::{BodyPose, PerSide, Side};
+use crate::body::{BodyPose, Joint, PerSide, Side};
 use crate::command::{CommandReceipt, Origin};
+use crate::geometry::Point;
+use crate::modelling::{ArmSpace, Mixture};
 use crate::sequencing::{Next, Order, Stage, Step, Trial};
 use crate::snapshot::{
-    Detection, ForceSample, Freshness, IterationView, Level, LogLine, MotionNotice, Outcome, ReceiptLine, Shared,
-    Snapshot, StepRow, TimelineEvent, TimelineKind, TrialPhase, WaypointRow,
+    Detection, EllipseView, ForceSample, Freshness, IterationView, Level, LogLine, MotionNotice, Outcome, ReceiptLine,
+    Shared, Snapshot, StepRow, TimelineEvent, TimelineKind, TrialPhase, WaypointRow,
 };
 use crate::strategy::{Contact, IterationSummary, StrategyKind, WaypointChange};
 use crate::time::Stamp;
@@ -17,6 +19,20 @@ use crate::time::Stamp;
 /// A count as the screen shows it; beyond four billion it no longer matters.
 fn count(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
+}
+
+/// The components of an arm's movement space, as they are drawn.
+fn ellipses_of(space: &ArmSpace) -> Vec<EllipseView> {
+    let of_joint = |joint: Joint| {
+        let components = space.joint(joint).map(Mixture::components).unwrap_or_default();
+        components.iter().map(move |component| EllipseView {
+            joint,
+            weight: component.weight(),
+            mean: Point::from(*component.mean()),
+            covariance: [0, 1, 2].map(|row| [0, 1, 2].map(|column| component.covariance()[(row, column)])),
+        })
+    };
+    Joint::DRESSED.into_iter().flat_map(of_joint).collect()
 }
 
 impl Supervisor {
@@ -35,6 +51,8 @@ impl Supervisor {
                 self.setup.settings.strategies.learning.maximum_iterations;
             let freshness = Freshness { last: None, deadline: self.protection.force_deadline().as_secs_f64() };
             self.view.sides.get_mut(side).force.freshness = freshness;
+            let space = self.setup.space.as_ref().map(|space| space.arms.get(side));
+            self.view.sides.get_mut(side).path.ellipses = space.map(ellipses_of).unwrap_or_default().into();
         }
         self.show_steps();
         self.show_settings();

@@ -80,8 +80,7 @@ fn by_iteration(trials: &[TrialRecord], quantity: &str, value: impl Fn(&Iteratio
 
 fn label(trial: &TrialRecord, side: Side, trials: usize) -> String {
     let strategy = trial.strategy().map_or("no strategy", crate::strategy::StrategyKind::name);
-    let name = trial.path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    if trials > 1 { format!("{strategy}, {side}, {name}") } else { format!("{side} arm") }
+    if trials > 1 { format!("{strategy}, {side}, {}", trial.name) } else { format!("{side} arm") }
 }
 
 /// One pass in top and front view: planned, travelled and updated path with the movement space (figures 4.9 to 4.16 and

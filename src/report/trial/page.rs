@@ -1,4 +1,4 @@
-//! The page of a trial, and the page that compares several.
+//! The page of a trial.
 
 use super::{TrialRecord, figures};
 use crate::body::Side;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`PlotError`] names the file that could not be written.
 pub fn write(trial: &TrialRecord, folder: &Path) -> Result<PathBuf, PlotError> {
-    let name = stem(trial);
+    let name = trial.name.clone();
     fs::create_dir_all(folder).map_err(|source| PlotError::Writing { path: folder.to_path_buf(), source })?;
     let header = &trial.header;
     let mut page = Page::new(format!("Trial {name}"), &format!("valet {}, {}", header.software, header.watermark));
@@ -27,19 +27,16 @@ pub fn write(trial: &TrialRecord, folder: &Path) -> Result<PathBuf, PlotError> {
     Ok(path)
 }
 
-fn stem(trial: &TrialRecord) -> String {
-    trial.path.file_stem().map_or_else(|| "trial".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
 /// A page with the folder that its plots go to as files.
-struct Sheet<'a> {
-    page: &'a mut Page,
-    folder: &'a Path,
-    name: &'a str,
+pub(super) struct Sheet<'a> {
+    pub(super) page: &'a mut Page,
+    pub(super) folder: &'a Path,
+    pub(super) name: &'a str,
 }
 
 impl Sheet<'_> {
-    fn figure(&mut self, figure: &Figure, part: &str, caption: &str) -> Result<(), PlotError> {
+    /// Draws a figure into the page and writes it beside it as SVG and PNG.
+    pub(super) fn figure(&mut self, figure: &Figure, part: &str, caption: &str) -> Result<(), PlotError> {
         figure.save(self.folder, &format!("{}-{part}", self.name))?;
         self.page.figure(figure, caption).map(drop)
     }
@@ -197,58 +194,4 @@ fn people(page: &mut Page, trial: &TrialRecord) {
     let head = ["statement", "1 disagree \u{2013} 7 agree"];
     page.table("Participant (to be filled in by hand)", &head, &participant.map(blank));
     page.table("Operator (to be filled in by hand)", &head, &operator.map(blank));
-}
-
-/// Writes the page that compares several trials, `index.html`.
-///
-/// # Errors
-/// [`PlotError`] names the file that could not be written.
-pub fn compare(trials: &[TrialRecord], folder: &Path) -> Result<PathBuf, PlotError> {
-    let mut page = Page::new("Trials compared", &format!("{} trials side by side", trials.len()));
-    page.section("Trials");
-    let rows: Vec<_> = trials.iter().map(trial_row).collect();
-    let head = [
-        "trial",
-        "person",
-        "strategy",
-        "seed",
-        "iterations",
-        "first energy (N)",
-        "last energy (N)",
-        "duration (s)",
-        "outcome",
-    ];
-    page.table("Trials", &head, &rows);
-    page.section("Learning");
-    let mut sheet = Sheet { page: &mut page, folder, name: "compared" };
-    sheet.figure(&figures::energy(trials), "energy", "Energy by iteration; dashed: left arm.")?;
-    sheet.figure(&figures::duration(trials), "duration", "Duration of the iterations; dashed: left arm.")?;
-    page.section("Last paths");
-    for trial in trials {
-        let mut sheet = Sheet { page: &mut page, folder, name: &stem(trial) };
-        for side in Side::BOTH {
-            let Some(last) = trial.passes(side).last() else { continue };
-            let caption = format!("{}: the last iteration of the {side} arm.", stem(trial));
-            sheet.figure(&figures::paths(trial, last), &format!("last-{side}"), &caption)?;
-        }
-    }
-    let path = folder.join("index.html");
-    page.save(&path)?;
-    Ok(path)
-}
-
-fn trial_row(trial: &TrialRecord) -> Vec<String> {
-    let energy =
-        |pass: Option<&super::Iteration>| pass.map_or("\u{2013}".into(), |pass| format!("{:.2}", pass.summary.energy));
-    vec![
-        stem(trial),
-        trial.header.profile.clone(),
-        trial.strategy().map_or("\u{2013}".into(), |strategy| strategy.to_string()),
-        trial.header.seed.to_string(),
-        trial.iterations.len().to_string(),
-        energy(trial.iterations.first()),
-        energy(trial.iterations.last()),
-        format!("{:.1}", trial.seconds),
-        trial.end.as_ref().map_or("not ended".into(), |(outcome, _)| outcome.words().to_owned()),
-    ]
 }
