@@ -26,6 +26,7 @@ mod shell;
 mod sim;
 mod sim_images;
 mod torture;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use exit::Failure;

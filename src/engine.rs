@@ -207,11 +207,23 @@ impl Worker {
                 next_tick = (next_tick + TICK).max(now);
             }
             if now >= next_snapshot {
-                let snapshot = self.supervisor.snapshot(self.clock.now());
+                self.supervisor.refresh_comparison();
+                let mut snapshot = self.supervisor.snapshot(self.clock.now());
+                self.time_stop(&mut snapshot);
                 self.outlet.show(&snapshot);
                 self.snapshots.replace(snapshot);
                 next_snapshot = now + SNAPSHOT;
             }
+        }
+    }
+
+    /// When the stop was asked for and when its first message left, as the latch and its thread measured it.
+    fn time_stop(&self, snapshot: &mut Snapshot) {
+        if snapshot.stop.latched {
+            let now = Duration::from_nanos(snapshot.now.nanoseconds());
+            let moment = |ago: Duration| Stamp::ZERO + now.saturating_sub(ago);
+            snapshot.stop.requested_at = self.latch.requested_ago().map(moment).or(snapshot.stop.requested_at);
+            snapshot.stop.sent_at = self.latch.sent_ago().map(moment);
         }
     }
 

@@ -5,6 +5,7 @@
 //! nothing, blocks no thread of the core and prints nothing.
 
 pub mod decode;
+pub mod ears;
 mod encode;
 pub mod environment;
 pub mod error;
@@ -17,6 +18,7 @@ pub mod node;
 pub mod simulation;
 mod subscription;
 mod watch;
+mod watcher;
 pub mod xmlrpc;
 
 pub use decode::DepthFrame;
@@ -26,3 +28,4 @@ pub use monitor::TopicReport;
 pub use node::{Node, leave};
 pub use simulation::SimNode;
 pub use subscription::Sink;
+pub use watcher::WatchLink;

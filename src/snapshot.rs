@@ -3,10 +3,12 @@
 //! The supervisor and the engine fill it; the console draws it. Nothing here decides, and nothing here reads a clock:
 //! whether a value is still fresh follows from [`Snapshot::now`] and the value's own stamp.
 
+mod checklist;
 mod force;
 mod health;
 mod history;
 mod path;
+mod stream;
 mod trial;
 
 pub use force::{Detection, ForceSample, ForceTier, ForceView, TierMargin, WindowView};

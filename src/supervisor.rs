@@ -6,6 +6,7 @@
 //! What it never does: let an arm move while a stop is latched, while the robot is not enabled, or on force, joints or
 //! robot state that are stale or not finite. What it decides is checked once more by the guards at the ports.
 
+mod compare;
 mod drive;
 pub mod effect;
 pub mod input;
@@ -68,6 +69,7 @@ pub struct Supervisor {
     last_tick: Option<Stamp>,
     body: Option<BodyPose>,
     view: Snapshot,
+    comparison: compare::Comparison,
     effects: Effects,
 }
 
@@ -93,6 +95,7 @@ impl Supervisor {
             last_tick: None,
             body: None,
             view: Snapshot::default(),
+            comparison: compare::Comparison::default(),
             effects: Effects::new(),
         };
         supervisor.prepare_view();
@@ -241,7 +244,9 @@ impl Supervisor {
 
     fn see_body(&mut self, now: Stamp, pose: &BodyPose) {
         self.protection.see_body(now, pose);
-        self.body = Some(*pose);
+        if self.body.replace(*pose).is_none() {
+            self.comparison.is_due();
+        }
         self.show_body(now, pose);
     }
 

@@ -1,5 +1,6 @@
 //! `valet bench`: speeds that matter to a user, measured on this machine.
 
+mod console;
 mod ik;
 mod pose;
 
@@ -14,12 +15,14 @@ pub(super) struct Arguments {
 
 #[derive(Debug, clap::Subcommand)]
 enum Bench {
+    Console(console::Arguments),
     Ik(ik::Arguments),
     Pose(pose::Arguments),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.bench {
+        Bench::Console(arguments) => console::run(arguments),
         Bench::Ik(arguments) => ik::run(arguments),
         Bench::Pose(arguments) => pose::run(arguments),
     }

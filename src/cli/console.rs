@@ -37,11 +37,18 @@ pub(super) struct Arguments {
     /// Decide everything, command nothing.
     #[arg(long)]
     dry_run: bool,
+    /// Show the trial of a node that runs already: this screen can stop it and do nothing else.
+    #[arg(long, value_name = "NODE", num_args = 0..=1, default_missing_value = "/valet",
+          conflicts_with_all = ["profile", "strategy", "seed", "dry_run"])]
+    watch: Option<String>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let places = Places::of_this_machine();
     let settings = Settings::find(arguments.config.as_deref(), &places).map_err(Failure::configuration)?;
+    if let Some(node) = &arguments.watch {
+        return super::watch::run(node, settings.console());
+    }
     let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
     let key = arguments.key.given()?;
     let person = LoadedProfile::find_with(name, &places, key.as_ref()).map_err(Failure::configuration)?;

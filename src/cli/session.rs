@@ -37,7 +37,7 @@ pub(super) struct Opening<'a> {
 pub(super) struct Session {
     engine: Option<Engine>,
     stop: Option<StopThread>,
-    link: Arc<RobotLink>,
+    shell: ShellView,
     recorder: Option<Arc<Recorder>>,
     node: Node,
 }
@@ -48,6 +48,25 @@ struct RobotOutlet {
     commander: Option<Commander>,
     showing: Showing,
     recorder: Option<Arc<Recorder>>,
+    shell: ShellView,
+}
+
+/// What only the shell knows of what may be seen: topics, master, recorder, and what can be chosen.
+#[derive(Clone)]
+struct ShellView {
+    link: Arc<RobotLink>,
+    recorder: Option<Arc<Recorder>>,
+    master: String,
+}
+
+impl ShellView {
+    fn fill_in(&self, snapshot: &mut Snapshot) {
+        let topics = self.link.topics();
+        snapshot.topics = Shared::new(topics.iter().map(|report| topic_health(snapshot.now, report)).collect());
+        snapshot.master.uri.clone_from(&self.master);
+        snapshot.recorder = self.recorder.as_deref().map(recorder_view).unwrap_or_default();
+        snapshot.checks = Shared::new(snapshot.check_list());
+    }
 }
 
 impl Outlet for RobotOutlet {
@@ -69,7 +88,7 @@ impl Outlet for RobotOutlet {
     }
 
     fn show(&mut self, snapshot: &Snapshot) {
-        self.showing.show(snapshot);
+        self.showing.show(snapshot, |whole| self.shell.fill_in(whole));
     }
 
     fn record(&mut self, now: Stamp, input: &Input, effects: &[Effect]) {
@@ -126,13 +145,21 @@ impl Session {
             });
             GuardedPair::new(guarded, model.clone(), limits.clone())
         });
-        let outlet =
-            RobotOutlet { limbs, commander: link.commander(), showing: link.showing(), recorder: recorder.clone() };
+        let link = Arc::new(link);
+        let master = node.master().to_owned();
+        let shell = ShellView { link: Arc::clone(&link), recorder: recorder.clone(), master };
+        let outlet = RobotOutlet {
+            limbs,
+            commander: link.commander(),
+            showing: link.showing(),
+            recorder: recorder.clone(),
+            shell: shell.clone(),
+        };
         let engine = Engine::start(supervisor, Box::new(outlet), latch).map_err(Failure::fault)?;
         // Nobody else sets it: this cannot fail.
         let _ = inbox.set(engine.inbox());
         engine.inbox().offer(Input::Link(LinkEvent::MasterBack));
-        Ok(Self { engine: Some(engine), stop: Some(stop), link: Arc::new(link), recorder, node })
+        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, node })
     }
 
     /// The stop, for keys and panics: sets the latch, never blocks.
@@ -168,8 +195,7 @@ impl Session {
     /// Snapshots with what only the shell knows filled in: topics, recorder, master.
     pub(super) fn viewer(&self) -> impl FnMut() -> Option<Snapshot> + use<> {
         let shared = self.engine.as_ref().map(Engine::snapshots);
-        let (link, recorder) = (Arc::clone(&self.link), self.recorder.clone());
-        let uri = self.node.master().to_owned();
+        let shell = self.shell.clone();
         let mut last = None;
         move || {
             let newest = shared.as_ref().map(SharedSnapshot::newest)?;
@@ -178,10 +204,7 @@ impl Session {
             }
             last = Some(newest.now);
             let mut snapshot = Snapshot::clone(&newest);
-            snapshot.topics =
-                Shared::new(link.topics().iter().map(|report| topic_health(snapshot.now, report)).collect());
-            snapshot.master.uri.clone_from(&uri);
-            snapshot.recorder = recorder.as_deref().map(recorder_view).unwrap_or_default();
+            shell.fill_in(&mut snapshot);
             Some(snapshot)
         }
     }
@@ -190,9 +213,11 @@ impl Session {
     pub(super) fn close(mut self) -> Option<String> {
         drop(self.engine.take());
         drop(self.stop.take());
-        let path =
-            self.recorder.take().and_then(Arc::into_inner).map(|recorder| recorder.finish().path.display().to_string());
-        leave((self.link, self.node));
+        let Self { shell: ShellView { link, recorder: shared, .. }, recorder, node, .. } = self;
+        // The recorder is finished by its last owner.
+        drop(shared);
+        let path = recorder.and_then(Arc::into_inner).map(|recorder| recorder.finish().path.display().to_string());
+        leave((link, node));
         path
     }
 }
@@ -228,8 +253,8 @@ fn topic_health(now: Stamp, report: &TopicReport) -> TopicHealth {
         freshness: Freshness { last, deadline: TOPIC_DEADLINE_SECONDS },
         rate: report.hertz,
         expected: report.expected_hertz,
-        gap: 0.0,
-        jitter: 0.0,
+        gap: report.gap_seconds,
+        jitter: report.jitter_seconds,
         stamp_lag: None,
         drops: report.unusable,
         publishers: report.publishers.clone(),

@@ -174,6 +174,7 @@ fn strategy(kind: StrategyKind, energies: &[f64], reachability: f64, inside: f64
     let row = StrategyRow {
         side: Side::Right,
         energies: energies.to_vec(),
+        reaches: energies.iter().map(|energy| Some(reachability - energy / 20.0)).collect(),
         reachability: Some(reachability),
         inside: Some(inside),
         comfort: Some(comfort),

@@ -2,6 +2,7 @@
 
 pub(super) mod compact;
 pub(super) mod force;
+mod front;
 pub(super) mod health;
 pub(super) mod log;
 pub(super) mod path;

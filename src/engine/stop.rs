@@ -32,7 +32,22 @@ struct Flags {
     ended: AtomicBool,
     /// Nanoseconds from the engine's start to the first stop message after the latest request; 0 before one was sent.
     sent_nanoseconds: AtomicU64,
+    /// Nanoseconds from the engine's start to the request of the present stop; 0 before there was one.
+    requested_nanoseconds: AtomicU64,
     start: Instant,
+}
+
+impl Flags {
+    /// Nanoseconds since the engine's start, never 0.
+    fn elapsed(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX).max(1)
+    }
+
+    /// How long ago a moment was that one of the counters holds.
+    fn ago(&self, counter: &AtomicU64) -> Option<Duration> {
+        let then = counter.load(Ordering::SeqCst);
+        (then > 0).then(|| Duration::from_nanos(self.elapsed().saturating_sub(then)))
+    }
 }
 
 /// The latch: cheap to clone, safe to use from any thread, a panic hook included.
@@ -48,6 +63,7 @@ impl StopLatch {
         if !self.flags.stopped.swap(true, Ordering::SeqCst) {
             self.flags.confirmed.store(false, Ordering::SeqCst);
             self.flags.sent_nanoseconds.store(0, Ordering::SeqCst);
+            self.flags.requested_nanoseconds.store(self.flags.elapsed(), Ordering::SeqCst);
         }
         self.thread.unpark();
     }
@@ -81,6 +97,18 @@ impl StopLatch {
         (nanoseconds > 0).then(|| Duration::from_nanos(nanoseconds))
     }
 
+    /// How long ago the present stop was asked for.
+    #[must_use]
+    pub fn requested_ago(&self) -> Option<Duration> {
+        self.flags.ago(&self.flags.requested_nanoseconds)
+    }
+
+    /// How long ago its first message left; `None` where none has left yet.
+    #[must_use]
+    pub fn sent_ago(&self) -> Option<Duration> {
+        self.flags.ago(&self.flags.sent_nanoseconds)
+    }
+
     fn must_send(&self) -> bool {
         self.is_stopped() && !self.flags.confirmed.load(Ordering::SeqCst)
     }
@@ -104,6 +132,7 @@ impl StopThread {
             confirmed: AtomicBool::new(false),
             ended: AtomicBool::new(false),
             sent_nanoseconds: AtomicU64::new(0),
+            requested_nanoseconds: AtomicU64::new(0),
             start: Instant::now(),
         });
         let shared = Arc::clone(&flags);
@@ -137,8 +166,7 @@ fn run(latch: &StopLatch, mut port: impl StopPort) {
     loop {
         if latch.must_send() {
             port.send_stop();
-            let after = latch.flags.start.elapsed().as_nanos();
-            let after = u64::try_from(after).unwrap_or(u64::MAX).max(1);
+            let after = latch.flags.elapsed();
             // Only the first message of a stop is timed.
             let _ = latch.flags.sent_nanoseconds.compare_exchange(0, after, Ordering::SeqCst, Ordering::SeqCst);
         }
@@ -177,6 +205,8 @@ mod tests {
             sent.recv_timeout(PATIENCE).unwrap();
         }
         assert!(latch.sent_after().is_some());
+        let (requested, sent) = (latch.requested_ago().unwrap(), latch.sent_ago().unwrap());
+        assert!(requested >= sent, "asked for before it was sent: {requested:?} {sent:?}");
         latch.confirm();
         drop(thread);
         assert!(latch.is_stopped(), "a confirmed stop stays latched");

@@ -84,6 +84,14 @@ pub(super) fn state(snapshot: &Snapshot) -> valet_msgs::State {
     }
 }
 
+/// Everything that may be seen, for a console that watches; `None` where it cannot be written, which serde allows for and
+/// a snapshot never brings about.
+pub(super) fn snapshot(snapshot: &Snapshot) -> Option<valet_msgs::Snapshot> {
+    let mut cbor = Vec::new();
+    ciborium::into_writer(snapshot, &mut cbor).ok()?;
+    Some(valet_msgs::Snapshot { header: header(snapshot.now, BASE), cbor })
+}
+
 /// One arm's force window; NaN where a value is not fresh or the window still fills.
 pub(super) fn force(snapshot: &Snapshot, side: Side, view: &SideView) -> valet_msgs::Force {
     let sample = view.force.fresh_sample(snapshot.now);

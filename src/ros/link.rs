@@ -218,6 +218,11 @@ impl std::fmt::Debug for StopPublisher {
 }
 
 impl StopPublisher {
+    /// The stop over a publisher that is there already.
+    pub(super) const fn new(publisher: Publisher<std_msgs::Empty>) -> Self {
+        Self(publisher)
+    }
+
     /// Sends one stop. To be repeated until the robot's state confirms it.
     pub fn send(&self) {
         // A stop that the transport does not take is repeated by its thread; there is no other way to send it.

@@ -39,7 +39,8 @@ rosrust::rosmsg_include!(
     std_srvs / Trigger,
     trajectory_msgs / JointTrajectory,
     valet_msgs / State,
-    valet_msgs / Force
+    valet_msgs / Force,
+    valet_msgs / Snapshot
 );
 
 #[cfg(test)]

@@ -27,6 +27,10 @@ pub struct TopicReport {
     pub hertz: f64,
     /// Least and most messages a second that are expected.
     pub expected_hertz: (f64, f64),
+    /// The longest time without a message lately, in seconds.
+    pub gap_seconds: f64,
+    /// Standard deviation of the times between messages, in seconds.
+    pub jitter_seconds: f64,
     /// Messages that could not be used.
     pub unusable: u64,
     /// Nodes that publish it, as the master knows them.
@@ -99,6 +103,8 @@ impl Monitor {
             age_seconds: state.freshness.age(now).map(|age| age.as_secs_f64()),
             hertz: state.freshness.rate(now),
             expected_hertz: self.expected_hertz,
+            gap_seconds: state.freshness.gap(now),
+            jitter_seconds: state.freshness.jitter(now),
             unusable: state.unusable,
             publishers: state.publishers.clone(),
             required: self.required,

@@ -161,7 +161,9 @@ impl Watch {
 
     /// Names nodes that command the robot beside this one, each once as long as it stays.
     fn name_foreign(&mut self, graph: &Graph) {
-        let commands = self.registrations.published.iter().filter(|topic| topic.starts_with("/robot/"));
+        // Whoever may see the robot may stop it: a console that watches does.
+        let commands = |topic: &&String| topic.starts_with("/robot/") && *topic != "/robot/set_super_stop";
+        let commands = self.registrations.published.iter().filter(commands);
         let found: BTreeSet<_> = commands
             .flat_map(|topic| graph.publishers_of(topic).iter().map(move |node| (topic.clone(), node.clone())))
             .filter(|(_, node)| *node != self.node && !ROBOTS_OWN.contains(&node.as_str()))

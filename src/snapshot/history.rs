@@ -40,6 +40,18 @@ impl<T: Clone> History<T> {
     }
 }
 
+impl<T: Clone> History<T> {
+    /// The newest `count` values as a series of their own, with the same room.
+    #[must_use]
+    pub fn newest(&self, count: usize) -> Self {
+        let mut newest: Vec<T> = self.iter().rev().take(count).cloned().collect();
+        newest.reverse();
+        let mut series = Self::new(self.capacity);
+        series.extend(newest);
+        series
+    }
+}
+
 impl<T> History<T> {
     /// How many values are held.
     #[must_use]

@@ -187,6 +187,9 @@ pub struct StrategyRow {
     pub side: Side,
     /// Energy by iteration in newtons.
     pub energies: Vec<f64>,
+    /// Reachability by iteration, beside the energies; `None` where there is no movement space.
+    #[serde(default)]
+    pub reaches: Vec<Option<f64>>,
     /// Mean log density of the path in the movement space, 0 being the best; `None` where it was not run or has no model.
     pub reachability: Option<f64>,
     /// Share of way-points inside the 95 % region, from 0 to 1.

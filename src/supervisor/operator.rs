@@ -221,7 +221,7 @@ impl Supervisor {
     }
 
     /// Hand, elbow and shoulder of one of the person's arms, as they are seen now.
-    fn arm_joints(&self, side: Side) -> Result<[Point; 3], String> {
+    pub(super) fn arm_joints(&self, side: Side) -> Result<[Point; 3], String> {
         let arm = self.body.as_ref().map(|body| body.arms.get(side));
         let place = |joint: Joint| {
             arm.and_then(|arm| arm.position(joint)).ok_or_else(|| {
@@ -231,7 +231,12 @@ impl Supervisor {
         Ok([place(Joint::Hand)?, place(Joint::Elbow)?, place(Joint::Shoulder)?])
     }
 
-    fn build_strategy(&self, side: Side, kind: StrategyKind, joints: [Point; 3]) -> Result<Box<dyn Strategy>, String> {
+    pub(super) fn build_strategy(
+        &self,
+        side: Side,
+        kind: StrategyKind,
+        joints: [Point; 3],
+    ) -> Result<Box<dyn Strategy>, String> {
         let space = self.setup.space.as_ref().map(|space| space.arms.get(side).clone());
         let context = ArmContext { initial: joints, space, seed: self.setup.seed };
         strategy::build(kind, &self.setup.settings.strategies, &context).map_err(|error| error.to_string())
@@ -291,6 +296,7 @@ impl Supervisor {
             return Err("the first arm is chosen before a trial".into());
         }
         self.setup.settings.trial.first_arm = side;
+        self.comparison.is_due();
         self.show_steps();
         Ok("with the next trial".into())
     }

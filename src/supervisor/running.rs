@@ -161,6 +161,7 @@ impl Supervisor {
                 let strategy = self.trial.as_ref().map_or(self.strategy, |trial| trial.strategy(side).kind());
                 let duration_seconds = self.pass_began.take().map_or(0.0, |began| now.since(began).as_secs_f64());
                 self.show_iteration_ended(side, strategy, &summary, duration_seconds);
+                self.comparison.iteration_ended(side, strategy, &summary);
                 let text = format!(
                     "{side} arm: iteration {} ended: energy {:.1} N, {} resistances",
                     summary.iteration, summary.energy, summary.contacts

@@ -54,6 +54,9 @@ impl Supervisor {
             let space = self.setup.space.as_ref().map(|space| space.arms.get(side));
             self.view.sides.get_mut(side).path.ellipses = space.map(ellipses_of).unwrap_or_default().into();
         }
+        self.view.choices.make_mut().strategies = StrategyKind::ALL.to_vec();
+        self.comparison.is_due();
+        self.show_space();
         self.show_steps();
         self.show_settings();
     }
@@ -208,6 +211,7 @@ impl Supervisor {
     }
 
     pub(super) fn show_start(&mut self, now: Stamp) {
+        self.comparison.trial_begins();
         for side in Side::BOTH {
             let view = self.view.sides.get_mut(side);
             view.iterations = Shared::default();
@@ -229,6 +233,7 @@ impl Supervisor {
     }
 
     pub(super) fn show_strategy(&mut self, _now: Stamp) {
+        self.comparison.is_due();
         let at_work = self.trial.as_ref().map(|trial| trial.strategy(trial.arm()).kind());
         self.view.trial.strategy = Some(at_work.unwrap_or(self.strategy));
         self.view.trial.strategy_pending =

@@ -285,6 +285,8 @@ mod tests {
             age_seconds,
             hertz,
             expected_hertz: (80.0, 120.0),
+            gap_seconds: 0.0,
+            jitter_seconds: 0.0,
             unusable: 0,
             publishers: vec![],
             required,

@@ -1,5 +1,6 @@
 //! The strategies side by side for this person: energy by iteration, reachability, comfort, and what a switch would do.
 
+use super::front;
 use crate::console::draw::Scene;
 use crate::console::theme::Role;
 use crate::console::widgets::text::{bar, fill, line, span, title, wrap};
@@ -19,11 +20,20 @@ pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffe
         return;
     }
     let first = scene.view.row.min(strategies.len().saturating_sub(SHOWN));
-    let columns: [Rect; SHOWN] = Layout::horizontal([Constraint::Fill(1); SHOWN]).spacing(1).areas(area);
+    let tall = strategies.iter().skip(first).take(SHOWN).map(|strategy| height(strategy)).max().unwrap_or(0);
+    let [above, below] = Layout::vertical([Constraint::Length(tall), Constraint::Fill(1)]).areas(area);
+    front::draw(scene, strategies, below, buffer);
+    let columns: [Rect; SHOWN] = Layout::horizontal([Constraint::Fill(1); SHOWN]).spacing(1).areas(above);
     let most = strategies.iter().flat_map(energies).fold(0.0, f64::max);
     for (strategy, column) in strategies.iter().skip(first).zip(columns) {
         fill(buffer, column, strategy_lines(scene, strategy, column, most));
     }
+}
+
+/// Rows that a strategy takes: its heading, each arm, and what a switch would do in up to four lines.
+fn height(strategy: &StrategyView) -> u16 {
+    let rows: usize = strategy.rows.iter().map(|row| 3 + row.energies.len()).sum();
+    u16::try_from(rows + 7).unwrap_or(u16::MAX)
 }
 
 fn energies(strategy: &StrategyView) -> impl Iterator<Item = f64> {
@@ -35,9 +45,13 @@ fn strategy_lines<'a>(scene: &Scene<'a>, strategy: &'a StrategyView, area: Rect,
     let works = scene.live.trial.strategy == Some(strategy.kind);
     let role = if works { Role::Focus } else { Role::Title };
     let state = if works { " at work " } else { "" };
-    let origin = if strategy.measured { "measured in this trial" } else { "expected, not measured in this trial" };
+    let origin = match (strategy.measured, energies(strategy).next().is_some()) {
+        (true, _) => "measured in this trial",
+        (false, true) => "measured in an earlier trial",
+        (false, false) => "never run: only its path is judged",
+    };
     let mut lines = vec![
-        Line::from(span(look, role, format!(" {}{state} ", strategy.kind))),
+        Line::from(span(look, role, format!(" {} {}{state} ", front::letter(strategy.kind), strategy.kind))),
         line(look, if strategy.measured { Role::Good } else { Role::Muted }, origin),
     ];
     for row in &strategy.rows {

@@ -1,4 +1,4 @@
-//! What other nodes may see of this one: `~state`, `~force/{s}`, `~path/{s}`, `~markers`, `/diagnostics`.
+//! What other nodes may see of this one: `~state`, `~force/{s}`, `~path/{s}`, `~markers`, `~snapshot`, `/diagnostics`.
 
 use super::{RosError, advertise};
 use crate::body::{PerSide, Side};
@@ -20,6 +20,7 @@ pub struct Showing {
     force: PerSide<Publisher<valet_msgs::Force>>,
     path: PerSide<Publisher<nav_msgs::Path>>,
     markers: Publisher<visualization_msgs::MarkerArray>,
+    snapshots: Publisher<valet_msgs::Snapshot>,
     diagnostics: Publisher<diagnostic_msgs::DiagnosticArray>,
     last: Arc<Mutex<Option<Stamp>>>,
 }
@@ -37,13 +38,15 @@ impl Showing {
             force: both("~force")?,
             path: both("~path")?,
             markers: advertise("~markers", 1)?,
+            snapshots: advertise("~snapshot", 2)?,
             diagnostics: advertise("/diagnostics", 1)?,
             last: Arc::new(Mutex::new(None)),
         })
     }
 
-    /// Publishes a snapshot, unless the last one was published less than a tenth of a second before.
-    pub fn show(&self, snapshot: &Snapshot) {
+    /// Publishes a snapshot, unless the last one was published less than a tenth of a second before. `complete` fills in
+    /// what only the shell knows, and is asked only where a console watches.
+    pub fn show(&self, snapshot: &Snapshot, complete: impl FnOnce(&mut Snapshot)) {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.is_some_and(|last| snapshot.now.checked_since(last).is_some_and(|span| span < PERIOD)) {
             return;
@@ -57,6 +60,13 @@ impl Showing {
             let _ = self.path.get(side).send(encode::path(snapshot.now, &view.path.updated));
         }
         let _ = self.markers.send(encode::markers::all(snapshot));
+        if self.snapshots.subscriber_count() > 0 {
+            let mut whole = snapshot.shortened();
+            complete(&mut whole);
+            if let Some(message) = encode::snapshot(&whole) {
+                let _ = self.snapshots.send(message);
+            }
+        }
     }
 
     pub(super) fn diagnose(&self, message: &diagnostic_msgs::DiagnosticArray) {

@@ -1,0 +1,89 @@
+//! Ears for measurements: when a stop is published, and how long an empty message takes over loopback by itself.
+
+use super::error::RosError;
+use super::link::advertise;
+use super::message::std_msgs;
+use crossbeam_channel::{Receiver, bounded};
+use rosrust::{Publisher, Subscriber};
+use std::time::{Duration, Instant};
+
+/// The topic of the messages that measure the way itself.
+const PING: &str = "~ping";
+
+fn listen(topic: &str) -> Result<(Subscriber, Receiver<Instant>), RosError> {
+    let (sender, heard) = bounded(64);
+    let subscriber = rosrust::subscribe(topic, 1, move |_: std_msgs::Empty| {
+        // Where nobody takes them, later moments are of no use either.
+        let _ = sender.try_send(Instant::now());
+    })
+    .map_err(|error| RosError::registration(topic, error))?;
+    Ok((subscriber, heard))
+}
+
+/// Hears the software stop, whoever sends it.
+pub struct StopEar {
+    heard: Receiver<Instant>,
+    _subscriber: Subscriber,
+}
+
+impl std::fmt::Debug for StopEar {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("StopEar")
+    }
+}
+
+impl StopEar {
+    /// Listens from now on.
+    ///
+    /// # Errors
+    /// Where the master does not register it.
+    pub fn listen() -> Result<Self, RosError> {
+        let (subscriber, heard) = listen("/robot/set_super_stop")?;
+        Ok(Self { heard, _subscriber: subscriber })
+    }
+
+    /// Forgets what was heard so far.
+    pub fn forget(&self) {
+        self.heard.try_iter().for_each(drop);
+    }
+
+    /// When the next stop came in; `None` where none did in time.
+    #[must_use]
+    pub fn next(&self, patience: Duration) -> Option<Instant> {
+        self.heard.recv_timeout(patience).ok()
+    }
+}
+
+/// Sends empty messages to itself over TCPROS on loopback.
+pub struct Ping {
+    publisher: Publisher<std_msgs::Empty>,
+    heard: Receiver<Instant>,
+    _subscriber: Subscriber,
+}
+
+impl std::fmt::Debug for Ping {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Ping")
+    }
+}
+
+impl Ping {
+    /// Makes both ends; they find each other within a moment.
+    ///
+    /// # Errors
+    /// Where the master does not register one of them.
+    pub fn start() -> Result<Self, RosError> {
+        let publisher = advertise(PING, 1)?;
+        let (subscriber, heard) = listen(PING)?;
+        Ok(Self { publisher, heard, _subscriber: subscriber })
+    }
+
+    /// How long one message took; `None` where it did not arrive in time.
+    #[must_use]
+    pub fn once(&self, patience: Duration) -> Option<Duration> {
+        self.heard.try_iter().for_each(drop);
+        let sent = Instant::now();
+        self.publisher.send(std_msgs::Empty {}).ok()?;
+        self.heard.recv_timeout(patience).ok().map(|arrived| arrived.saturating_duration_since(sent))
+    }
+}
