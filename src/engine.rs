@@ -89,6 +89,8 @@ struct Worker {
     supervisor: Supervisor,
     outlet: Box<dyn Outlet>,
     latch: StopLatch,
+    /// Stops of the latch that the supervisor knows of.
+    stops_known: u64,
     inputs: Receiver<Input>,
     lost: Arc<AtomicU64>,
     snapshots: SharedSnapshot,
@@ -128,6 +130,7 @@ impl Engine {
         let worker = Worker {
             supervisor,
             outlet,
+            stops_known: latch.requests(),
             latch: latch.clone(),
             inputs,
             lost: Arc::clone(&lost),
@@ -229,7 +232,9 @@ impl Worker {
 
     /// A stop that came past the supervisor, straight from a key: it is told.
     fn poll_latch(&mut self) {
-        if self.latch.is_stopped() && !self.supervisor.is_stopped() {
+        let requests = self.latch.requests();
+        if requests != self.stops_known {
+            self.stops_known = requests;
             self.step(&Input::Operator { command: Command::Stop, origin: Origin::OperatorKey });
         }
     }
@@ -245,7 +250,7 @@ impl Worker {
         let now = self.clock.now();
         let was_stopped = self.supervisor.is_stopped();
         let effects = self.supervisor.step(now, input);
-        self.follow_stop(was_stopped);
+        self.follow_stop(was_stopped, &effects);
         self.outlet.record(now, input, &effects);
         for effect in effects {
             self.carry_out(now, effect);
@@ -253,11 +258,13 @@ impl Worker {
     }
 
     /// Keeps the latch in step with the supervisor, in both directions.
-    fn follow_stop(&mut self, was_stopped: bool) {
-        match (was_stopped, self.supervisor.is_stopped()) {
-            (false, true) => self.latch.stop(),
-            (true, false) => self.latch.clear(),
-            _ => {}
+    fn follow_stop(&mut self, was_stopped: bool, effects: &[Effect]) {
+        let is_stopped = self.supervisor.is_stopped();
+        if effects.iter().any(|effect| matches!(effect, Effect::Stopped { .. })) || (is_stopped && !was_stopped) {
+            self.latch.stop();
+            self.stops_known = self.latch.requests();
+        } else if was_stopped && !is_stopped && self.latch.requests() == self.stops_known {
+            self.latch.clear();
         }
         if self.supervisor.stop_is_confirmed() {
             self.latch.confirm();
@@ -282,3 +289,6 @@ impl Worker {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

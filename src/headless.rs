@@ -5,8 +5,10 @@
 
 pub mod operator;
 pub mod report;
+pub mod typed;
 pub mod virtual_time;
 
 pub use operator::ScriptedOperator;
 pub use report::{Report, TrialResult};
+pub use typed::{NoCommand, Typed};
 pub use virtual_time::{VirtualError, VirtualTrial};

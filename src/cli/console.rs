@@ -1,19 +1,26 @@
-//! `valet console`: the operator console on a ROS graph.
+//! `valet console`: the operator console on a ROS graph, on a screen or as lines.
+
+mod lines;
 
 use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::recording::RecordArguments;
 use super::session::{Opening, Session};
-use crate::config::{LoadedProfile, Places, Settings};
+use super::sim::ros_failure;
+use crate::command::Origin;
+use crate::config::{Key, LoadedProfile, Places, Settings};
 use crate::console::{ConsoleOptions, ExitReason};
+use crate::ros::Node;
 use crate::snapshot::{Snapshot, Watermark};
 use crate::strategy::StrategyKind;
 use crate::supervisor::Setup;
 use std::path::{Path, PathBuf};
 
 /// The operator console on a ROS graph.
-#[derive(Debug, Default, clap::Args)]
+///
+/// The private parameters ~profile, ~strategy, ~seed, ~record and ~dry_run stand in for options that are not typed.
+#[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct Arguments {
     /// The person: a name or a file.
     #[arg(long)]
@@ -21,9 +28,9 @@ pub(super) struct Arguments {
     /// The strategy that a trial begins with.
     #[arg(long)]
     strategy: Option<String>,
-    /// Seed of everything random; it is recorded.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    /// Seed of everything random; it is recorded [default: 1].
+    #[arg(long)]
+    seed: Option<u64>,
     /// Another file of settings than the one that is found.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -41,32 +48,98 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NODE", num_args = 0..=1, default_missing_value = "/valet",
           conflicts_with_all = ["profile", "strategy", "seed", "dry_run"])]
     watch: Option<String>,
+    /// Without a screen: print what happens as lines, read commands as lines (`enable`, `start`, `stop`, ...).
+    #[arg(long)]
+    headless: bool,
+    /// With --headless: print one JSON object a line.
+    #[arg(long, requires = "headless")]
+    json: bool,
+}
+
+/// What is needed to open a session, read and checked.
+struct Prepared {
+    settings: Settings,
+    person: LoadedProfile,
+    setup: Setup,
+    key: Option<Key>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let places = Places::of_this_machine();
-    let settings = Settings::find(arguments.config.as_deref(), &places).map_err(Failure::configuration)?;
     if let Some(node) = &arguments.watch {
-        return super::watch::run(node, settings.console());
+        let settings = Settings::find(arguments.config.as_deref(), &Places::of_this_machine());
+        return super::watch::run(node, settings.map_err(Failure::configuration)?.console());
     }
-    let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
-    let key = arguments.key.given()?;
-    let person = LoadedProfile::find_with(name, &places, key.as_ref()).map_err(Failure::configuration)?;
-    let watermark = if arguments.dry_run { Watermark::DryRun } else { Watermark::Live };
-    let mut setup = settings.setup_for(&person, arguments.seed, watermark).map_err(Failure::configuration)?;
-    choose_strategy(&mut setup, arguments.strategy.as_deref())?;
-    setup.settings.warm_start |= arguments.warm_start;
-    let recording = arguments.record.of_trials(&places.trials, settings.recording());
-    let session = Session::open(Opening { setup, person: &person, recording, is_dry_run: arguments.dry_run })?;
-    let reason = show(&session, settings.console());
+    // What was typed is checked first: a wrong option needs no master to be found.
+    let mut prepared = prepare(arguments)?;
+    let node = Node::start("valet").map_err(ros_failure)?;
+    let mut arguments = arguments.clone();
+    if arguments.take_parameters(&node) {
+        prepared = prepare(&arguments)?;
+    }
+    operate(&arguments, node, prepared)
+}
+
+fn operate(arguments: &Arguments, node: Node, prepared: Prepared) -> Result<(), Failure> {
+    let Prepared { settings, person, setup, key } = prepared;
+    let strategy = setup.settings.strategy;
+    let recording = arguments.record.of_trials(&Places::of_this_machine().trials, settings.recording());
+    let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: arguments.dry_run })?;
+    let reason = if arguments.headless {
+        lines::follow(&session, strategy, arguments.seed(), arguments.json).map(|()| ExitReason::Quit)
+    } else {
+        show(&session, settings.console())
+    };
     let recorded = session.close();
     if let Some(trial) = recorded.as_deref().filter(|_| person.keeps_learned() && !arguments.dry_run) {
-        if let Err(failure) = super::profile::learn(&mut Output::new(false), &person, Path::new(trial), key.as_ref()) {
+        let mut output = Output::new(arguments.json);
+        if let Err(failure) = super::profile::learn(&mut output, &person, Path::new(trial), key.as_ref()) {
             // How the trial ended is what the exit code tells.
             super::output::complain(&failure);
         }
     }
-    conclude(reason, recorded.as_deref())
+    conclude(reason, recorded.as_deref().filter(|_| !arguments.json))
+}
+
+impl Arguments {
+    fn seed(&self) -> u64 {
+        self.seed.unwrap_or(1)
+    }
+
+    /// Puts the node's private parameters in the places of options that were not typed. True where one changed.
+    fn take_parameters(&mut self, node: &Node) -> bool {
+        let becomes_dry = !self.dry_run && node.switch_parameter("~dry_run");
+        self.dry_run |= becomes_dry;
+        let taken = [
+            take(&mut self.profile, || node.text_parameter("~profile")),
+            take(&mut self.strategy, || node.text_parameter("~strategy")),
+            take(&mut self.seed, || node.seed_parameter("~seed")),
+            self.record.take_folder(|| node.text_parameter("~record").map(PathBuf::from)),
+            becomes_dry,
+        ];
+        taken.contains(&true)
+    }
+}
+
+/// Puts a parameter into an empty place. True where there was one.
+fn take<T>(place: &mut Option<T>, parameter: impl FnOnce() -> Option<T>) -> bool {
+    if place.is_none() {
+        *place = parameter();
+        return place.is_some();
+    }
+    false
+}
+
+fn prepare(arguments: &Arguments) -> Result<Prepared, Failure> {
+    let places = Places::of_this_machine();
+    let settings = Settings::find(arguments.config.as_deref(), &places).map_err(Failure::configuration)?;
+    let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
+    let key = arguments.key.given()?;
+    let person = LoadedProfile::find_with(name, &places, key.as_ref()).map_err(Failure::configuration)?;
+    let watermark = if arguments.dry_run { Watermark::DryRun } else { Watermark::Live };
+    let mut setup = settings.setup_for(&person, arguments.seed(), watermark).map_err(Failure::configuration)?;
+    choose_strategy(&mut setup, arguments.strategy.as_deref())?;
+    setup.settings.warm_start |= arguments.warm_start;
+    Ok(Prepared { settings, person, setup, key })
 }
 
 /// Puts the strategy that was asked for into a setup.
@@ -83,7 +156,8 @@ pub(super) fn choose_strategy(setup: &mut Setup, name: Option<&str>) -> Result<(
 pub(super) fn show(session: &Session, options: &ConsoleOptions) -> Result<ExitReason, Failure> {
     let mut viewer = session.viewer();
     let newest = move || -> Option<Snapshot> { viewer() };
-    crate::console::run(newest, session.asker(), &session.stopper(), None, options).map_err(Failure::configuration)
+    crate::console::run(newest, session.asker(Origin::OperatorKey), &session.stopper(), None, options)
+        .map_err(Failure::configuration)
 }
 
 /// Says on leaving where the record is, and turns the reason into an exit code.

@@ -145,7 +145,7 @@ fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, 
     Ok((person, setup, settings))
 }
 
-fn print_report(output: &mut Output, report: &Report, seconds: f64) -> Result<(), Failure> {
+pub(super) fn print_report(output: &mut Output, report: &Report, seconds: f64) -> Result<(), Failure> {
     output.line(format!("{seconds:8.2} s  {}", report.sentence))?;
     report.event.as_ref().map_or(Ok(()), |event| output.event(event))
 }
@@ -158,7 +158,7 @@ fn chosen_strategy(arguments: &Arguments) -> Result<Option<StrategyKind>, Failur
     found.map(Some).ok_or_else(none)
 }
 
-fn verdict(result: &TrialResult) -> Result<(), Failure> {
+pub(super) fn verdict(result: &TrialResult) -> Result<(), Failure> {
     let reason = result.reason.clone();
     match result.outcome {
         Outcome::Completed => Ok(()),

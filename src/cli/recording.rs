@@ -45,6 +45,15 @@ impl RecordArguments {
         self.place(default, Some(DEMOS_KEPT), settings)
     }
 
+    /// Takes a folder that comes from elsewhere, where nothing was typed. True where there was one.
+    pub(super) fn take_folder(&mut self, folder: impl FnOnce() -> Option<PathBuf>) -> bool {
+        if self.no_record || self.record.is_some() {
+            return false;
+        }
+        self.record = folder();
+        self.record.is_some()
+    }
+
     fn place(&self, default: &Path, keep: Option<usize>, settings: &RecordingSettings) -> Option<Recording> {
         if self.no_record {
             warn("--no-record: NOTHING IS RECORDED. This trial cannot be shown, replayed or explained afterwards");

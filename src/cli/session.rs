@@ -26,6 +26,7 @@ const TOPIC_DEADLINE_SECONDS: f64 = 0.5;
 
 /// What a session is opened with.
 pub(super) struct Opening<'a> {
+    pub(super) node: Node,
     pub(super) setup: Setup,
     pub(super) person: &'a LoadedProfile,
     /// Where the journal goes; `None` where the operator refused one.
@@ -107,10 +108,10 @@ impl Outlet for RobotOutlet {
 }
 
 impl Session {
-    /// Joins the graph and starts to supervise. Nothing moves before Enable and Start.
+    /// Links the node to the robot and starts to supervise. Nothing moves before Enable and Start.
     ///
     /// # Errors
-    /// Where no master answers, a setting is not usable, or the recorder cannot write.
+    /// Where the master does not register something, a setting is not usable, or the recorder cannot write.
     pub(super) fn open(opening: Opening<'_>) -> Result<Self, Failure> {
         let model = RobotModel::baxter().map_err(Failure::configuration)?;
         let limits = opening.setup.settings.motion.clone();
@@ -127,7 +128,7 @@ impl Session {
         let recorder = recorder.map(|place| place.start(&opening.setup, opening.person, told)).transpose()?;
         let recorder = recorder.map(Arc::new);
         let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
-        let node = Node::start("valet").map_err(ros_failure)?;
+        let node = opening.node;
         let link =
             RobotLink::connect(&node, LinkSettings { is_dry_run: opening.is_dry_run }, sink).map_err(ros_failure)?;
         let publisher = link.stop_publisher();
@@ -172,14 +173,26 @@ impl Session {
         })
     }
 
-    /// Where commands go.
-    pub(super) fn asker(&self) -> impl FnMut(Command) -> Result<(), String> + use<> {
+    /// Where the commands of `origin` go.
+    pub(super) fn asker(&self, origin: Origin) -> impl FnMut(Command) -> Result<(), String> + use<> {
         let inbox = self.engine.as_ref().map(Engine::inbox);
         move |command| {
             let inbox = inbox.as_ref().ok_or("the supervisor has ended")?;
-            inbox.offer(Input::Operator { command, origin: Origin::OperatorKey });
+            inbox.offer(Input::Operator { command, origin });
             Ok(())
         }
+    }
+
+    /// Nobody watches any more: the trial holds.
+    pub(super) fn lose_console(&self) {
+        if let Some(engine) = &self.engine {
+            engine.inbox().offer(Input::Link(LinkEvent::ConsoleLost));
+        }
+    }
+
+    /// True while a stop is latched.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.latch().is_stopped())
     }
 
     /// The engine, as long as the session is open.

@@ -6,20 +6,28 @@ use super::exit::Failure;
 use super::output::Output;
 use super::sim_images;
 use crate::assembly::SwitchRequest;
-use crate::body::Side;
+use crate::body::{PerSide, Side};
 use crate::config::{LoadedProfile, Places, Profile, Settings};
+use crate::geometry::Pose;
 use crate::kinematics::JointVector;
 use crate::ros::master::{EmbeddedMaster, USUAL_PORT, relay_log};
-use crate::ros::simulation::{Senses, SimNode, SimulatedRobot};
+use crate::ros::simulation::{DepthPicture, Senses, SimNode, SimulatedCamera, SimulatedRobot};
 use crate::ros::{Node, RosError, environment, leave};
+use crate::sim::camera;
+use crate::sim::person::{ArmPoints, SimulatedPerson};
 use crate::sim::world::{World, WorldSetup};
 use crate::snapshot::Level;
 use crate::time::Stamp;
+use crate::vision::Intrinsics;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// The seed where none is given.
+const DEFAULT_SEED: u64 = 1;
 
 /// Where the ROS master comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -32,6 +40,8 @@ pub(super) enum MasterChoice {
 }
 
 /// The simulated Baxter, person and camera as a ROS node.
+///
+/// The private parameters ~profile and ~seed stand in for options that are not typed.
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct Arguments {
     /// Where the ROS master comes from.
@@ -43,9 +53,9 @@ pub(super) struct Arguments {
     /// The person: a name or a file.
     #[arg(long)]
     pub(super) profile: Option<String>,
-    /// Seed of everything random.
-    #[arg(long, default_value_t = 1)]
-    pub(super) seed: u64,
+    /// Seed of everything random [default: 1].
+    #[arg(long)]
+    pub(super) seed: Option<u64>,
     /// Instead of a robot: write depth images of simulated people with their truth into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) images: Option<PathBuf>,
@@ -55,23 +65,62 @@ pub(super) struct Arguments {
 }
 
 /// A simulated world behind the robot's topics.
-struct WorldOnTheWire(World);
+struct WorldOnTheWire {
+    world: World,
+    seen: SeenArms,
+}
+
+/// Where the person's arms are, for the camera, which takes its pictures in a thread of its own.
+type SeenArms = Arc<Mutex<PerSide<ArmPoints>>>;
+
+/// The camera on the robot's head.
+struct HeadCamera {
+    person: SimulatedPerson,
+    seen: SeenArms,
+    intrinsics: Intrinsics,
+    seed: u64,
+}
+
+impl SimulatedCamera for HeadCamera {
+    fn mount(&self) -> Pose {
+        camera::robot_mount()
+    }
+
+    fn picture(&mut self) -> DepthPicture {
+        let arms = *self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        // Each picture has noise of its own.
+        self.seed = self.seed.wrapping_add(1);
+        let view = camera::view(&self.person, &arms, &self.intrinsics, &self.mount(), self.seed);
+        let Intrinsics { fx, fy, cx, cy } = self.intrinsics;
+        let pixels = |count: usize| u32::try_from(count).unwrap_or_default();
+        DepthPicture {
+            size: (pixels(view.depth.width()), pixels(view.depth.height())),
+            millimetres: view.depth.millimetres().to_vec(),
+            intrinsics: [fx, fy, cx, cy],
+        }
+    }
+}
 
 impl SimulatedRobot for WorldOnTheWire {
     fn command_joints(&mut self, side: Side, joints: &JointVector, now: Stamp) {
-        self.0.command_joints(side, joints, now);
+        self.world.command_joints(side, joints, now);
     }
 
     fn switch(&mut self, request: SwitchRequest, now: Stamp) {
-        self.0.switch(request, now);
+        self.world.switch(request, now);
     }
 
     fn set_speed_ratio(&mut self, side: Side, ratio: f64) {
-        self.0.set_speed_ratio(side, ratio);
+        self.world.set_speed_ratio(side, ratio);
+    }
+
+    fn set_command_timeout(&mut self, side: Side, timeout: Duration) {
+        self.world.set_command_timeout(side, timeout);
     }
 
     fn step(&mut self, now: Stamp) -> Senses {
-        let output = self.0.step(now);
+        let output = self.world.step(now);
+        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = self.world.person_arms();
         Senses {
             endpoints: output.endpoints,
             joints: output.joints,
@@ -84,26 +133,32 @@ impl SimulatedRobot for WorldOnTheWire {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.images {
-        return sim_images::write(folder, arguments.count, arguments.seed);
+        return sim_images::write(folder, arguments.count, arguments.seed.unwrap_or(DEFAULT_SEED));
     }
     let master = match arguments.master {
         MasterChoice::Running => None,
         MasterChoice::Embedded => Some(embedded_master(arguments.port)?),
     };
-    let person = simulated_person(arguments)?;
+    // What was typed is checked first: a wrong name needs no master to be found.
+    simulated_person(arguments.profile.as_deref())?;
+    let ended = ending_signals()?;
+    let node = Node::start("simulated_baxter").map_err(ros_failure)?;
+    let profile = arguments.profile.clone().or_else(|| node.text_parameter("~profile"));
+    let seed = arguments.seed.or_else(|| node.seed_parameter("~seed")).unwrap_or(DEFAULT_SEED);
+    let person = simulated_person(profile.as_deref())?;
     let setup = WorldSetup {
-        seed: arguments.seed,
+        seed,
         person: person.simulated.clone().unwrap_or_default(),
         garment: person.garment(None).cloned().unwrap_or_default(),
         ..WorldSetup::default()
     };
     let world = World::new(&setup).map_err(Failure::configuration)?;
-    let ended = ending_signals()?;
-    let node = Node::start("simulated_baxter").map_err(ros_failure)?;
+    let seen: SeenArms = Arc::new(Mutex::new(world.person_arms()));
     let relay = master.as_ref().map(|_| relay_log()).transpose().map_err(ros_failure)?;
-    let mut robot = SimNode::new(&node, Box::new(WorldOnTheWire(world))).map_err(ros_failure)?;
-    let words =
-        format!("simulated Baxter {} with seed {} on the master at {}", node.name(), arguments.seed, node.master());
+    let camera = HeadCamera { person: setup.person, seen: Arc::clone(&seen), intrinsics: Intrinsics::default(), seed };
+    let mut robot = SimNode::new(&node, Box::new(WorldOnTheWire { world, seen })).map_err(ros_failure)?;
+    robot.add_camera(Box::new(camera)).map_err(ros_failure)?;
+    let words = format!("simulated Baxter {} with seed {seed} on the master at {}", node.name(), node.master());
     Output::new(false).line(&words)?;
     node.log(Level::Information, &words);
     robot.run(|| node.is_running() && !ended.load(Ordering::SeqCst));
@@ -114,10 +169,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The profile that is named, or the one that settings name.
-fn simulated_person(arguments: &Arguments) -> Result<Profile, Failure> {
+fn simulated_person(typed: Option<&str>) -> Result<Profile, Failure> {
     let places = Places::of_this_machine();
     let settings = Settings::find(None, &places).map_err(Failure::configuration)?;
-    let name = arguments.profile.as_deref().unwrap_or_else(|| settings.profile());
+    let name = typed.unwrap_or_else(|| settings.profile());
     LoadedProfile::find(name, &places).map(|person| person.profile).map_err(Failure::configuration)
 }
 

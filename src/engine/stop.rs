@@ -28,6 +28,8 @@ impl<F: FnMut() + Send> StopPort for F {
 #[derive(Debug)]
 struct Flags {
     stopped: Arc<AtomicBool>,
+    /// How often a stop was asked for: each time is answered with a message of its own, also while an earlier stop is latched.
+    requests: AtomicU64,
     confirmed: AtomicBool,
     ended: AtomicBool,
     /// Nanoseconds from the engine's start to the first stop message after the latest request; 0 before one was sent.
@@ -58,14 +60,22 @@ pub struct StopLatch {
 }
 
 impl StopLatch {
-    /// Stops the robot. Never blocks, and does no harm when repeated.
+    /// Stops the robot. Never blocks, and does no harm when repeated: a robot that was reset and enabled since is stopped anew.
     pub fn stop(&self) {
-        if !self.flags.stopped.swap(true, Ordering::SeqCst) {
-            self.flags.confirmed.store(false, Ordering::SeqCst);
+        let was_stopped = self.flags.stopped.swap(true, Ordering::SeqCst);
+        let was_confirmed = self.flags.confirmed.swap(false, Ordering::SeqCst);
+        if !was_stopped || was_confirmed {
             self.flags.sent_nanoseconds.store(0, Ordering::SeqCst);
             self.flags.requested_nanoseconds.store(self.flags.elapsed(), Ordering::SeqCst);
         }
+        self.flags.requests.fetch_add(1, Ordering::SeqCst);
         self.thread.unpark();
+    }
+
+    /// How often a stop was asked for so far: who tells of stops sees by it that there was a new one.
+    #[must_use]
+    pub fn requests(&self) -> u64 {
+        self.flags.requests.load(Ordering::SeqCst)
     }
 
     /// True from [`StopLatch::stop`] until [`StopLatch::clear`].
@@ -129,6 +139,7 @@ impl StopThread {
     pub fn start(port: impl StopPort + 'static) -> std::io::Result<Self> {
         let flags = Arc::new(Flags {
             stopped: Arc::default(),
+            requests: AtomicU64::new(0),
             confirmed: AtomicBool::new(false),
             ended: AtomicBool::new(false),
             sent_nanoseconds: AtomicU64::new(0),
@@ -163,9 +174,12 @@ impl Drop for StopThread {
 }
 
 fn run(latch: &StopLatch, mut port: impl StopPort) {
+    let mut answered = 0;
     loop {
-        if latch.must_send() {
+        let requests = latch.requests();
+        if latch.must_send() || requests != answered {
             port.send_stop();
+            answered = requests;
             let after = latch.flags.elapsed();
             // Only the first message of a stop is timed.
             let _ = latch.flags.sent_nanoseconds.compare_exchange(0, after, Ordering::SeqCst, Ordering::SeqCst);
@@ -175,7 +189,7 @@ fn run(latch: &StopLatch, mut port: impl StopPort) {
         }
         if latch.must_send() {
             thread::park_timeout(REPEAT);
-        } else {
+        } else if latch.requests() == answered {
             thread::park();
         }
     }
@@ -239,6 +253,21 @@ mod tests {
         while sent.try_recv().is_ok() {}
         latch.stop();
         sent.recv_timeout(PATIENCE).unwrap();
+    }
+
+    #[test]
+    fn a_stop_that_is_asked_for_again_is_sent_again_although_the_first_was_confirmed() {
+        let (thread, sent) = thread_that_tells();
+        let latch = thread.latch();
+        latch.stop();
+        sent.recv_timeout(PATIENCE).unwrap();
+        latch.confirm();
+        // What was on its way when the confirmation came.
+        while sent.recv_timeout(REPEAT * 4).is_ok() {}
+        latch.stop();
+        latch.confirm();
+        sent.recv_timeout(PATIENCE).unwrap();
+        assert_eq!(latch.requests(), 2);
     }
 
     #[test]

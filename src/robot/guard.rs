@@ -46,6 +46,8 @@ impl Default for GuardSettings {
 
 /// Shortest time between two commands that a speed is computed with: half a tick.
 const SHORTEST_STEP: f64 = 0.005;
+/// Time between two commands that are on time, in seconds.
+const USUAL_STEP: f64 = 0.01;
 
 /// A command that was sent.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +57,13 @@ struct Sent {
     speed: JointVector,
     /// Seconds between this command and the one before.
     step: f64,
+}
+
+impl Sent {
+    /// Seconds from this command to one that is sent now.
+    fn step_until(&self, now: Stamp) -> f64 {
+        now.since(self.stamp).as_secs_f64().max(SHORTEST_STEP)
+    }
 }
 
 /// An arm behind its guard.
@@ -165,15 +174,27 @@ impl<L: Limb> GuardedLimb<L> {
     }
 
     fn judge_rates(&self, now: Stamp, previous: &Sent, joints: &JointVector) -> Result<(), LimitBreach> {
-        let step = now.since(previous.stamp).as_secs_f64().max(SHORTEST_STEP);
+        let step = previous.step_until(now);
         let speed = (joints - previous.joints) / step;
         let (more_speed, more_acceleration) = self.settings.tolerance;
         let most = self.limits.joint_speed * (1.0 + more_speed);
         self.first_beyond(&speed, &most, |joint| Limit::JointSpeed { joint })?;
         // Each speed holds for the middle of its own step.
-        let acceleration = (speed - previous.speed) / (0.5 * (step + previous.step));
+        let acceleration = (self.speed_of(previous, joints, step) - previous.speed) / (0.5 * (step + previous.step));
         let most = self.limits.joint_acceleration * (1.0 + more_acceleration);
         self.first_beyond(&acceleration, &most, |joint| Limit::JointAcceleration { joint })
+    }
+
+    /// The speed that a command asks for. A late one holds a place for which the arm has had the whole pause or only its last
+    /// tick: it counts as the speed between the two that is nearest to the one before, so that a late beat, after which the
+    /// motion goes on as planned, is no braking and no start.
+    fn speed_of(&self, previous: &Sent, joints: &JointVector, step: f64) -> JointVector {
+        let moved = joints - previous.joints;
+        let (slow, fast) = (moved / step, moved / step.min(USUAL_STEP));
+        let most = self.limits.joint_speed * (1.0 + self.settings.tolerance.0);
+        let nearest = previous.speed.sup(&slow.inf(&fast)).inf(&slow.sup(&fast));
+        // A mean speed beyond the limit is judged by itself.
+        nearest.inf(&most.sup(&slow)).sup(&(-most).inf(&slow))
     }
 
     fn first_beyond(
@@ -220,13 +241,10 @@ impl<L: Limb> Limb for GuardedLimb<L> {
     fn command(&mut self, now: Stamp, joints: &JointVector) -> Result<(), CommandError> {
         self.judge(now, joints)?;
         self.inner.command(now, joints)?;
-        let (speed, step) = self.previous(now).map_or_else(
-            || (JointVector::zeros(), self.settings.freshness.as_secs_f64().min(0.01)),
-            |previous| {
-                let step = now.since(previous.stamp).as_secs_f64().max(SHORTEST_STEP);
-                ((joints - previous.joints) / step, step)
-            },
-        );
+        let (speed, step) = self.previous(now).map_or((JointVector::zeros(), USUAL_STEP), |previous| {
+            let step = previous.step_until(now);
+            (self.speed_of(&previous, joints, step), step)
+        });
         self.sent = Some(Sent { stamp: now, joints: *joints, speed, step });
         Ok(())
     }

@@ -16,7 +16,7 @@ use crate::supervisor::{EndpointSample, JointSample};
 use crate::time::Stamp;
 
 /// The frame of every position that leaves.
-const BASE: &str = "base";
+pub(super) const BASE: &str = "base";
 /// `torso_t0` and `head_nod` as a real robot reports them, radians.
 const TORSO: f64 = -12.565_987;
 
@@ -51,6 +51,19 @@ fn pose(pose: &Pose) -> geometry_msgs::Pose {
     geometry_msgs::Pose {
         position: point(&pose.translation.vector.into()),
         orientation: geometry_msgs::Quaternion { x: q.x, y: q.y, z: q.z, w: q.w },
+    }
+}
+
+/// Where a frame lies in another.
+pub(super) fn transform(stamp: Stamp, parent: &str, child: &str, place: &Pose) -> geometry_msgs::TransformStamped {
+    let q = &place.rotation.coords;
+    geometry_msgs::TransformStamped {
+        header: header(stamp, parent),
+        child_frame_id: child.to_owned(),
+        transform: geometry_msgs::Transform {
+            translation: vector(&place.translation.vector),
+            rotation: geometry_msgs::Quaternion { x: q.x, y: q.y, z: q.z, w: q.w },
+        },
     }
 }
 
@@ -197,14 +210,8 @@ pub(super) fn skeleton(body: &BodyPose) -> tf2_msgs::TFMessage {
             .filter_map(move |(joint, word)| Some((format!("{side}_{word}_1"), body.arms.get(side).position(joint)?)))
     });
     let neck = body.neck.map(|neck| ("neck_1".to_owned(), neck.position));
-    let transforms = arms.chain(neck).map(|(name, place)| geometry_msgs::TransformStamped {
-        header: header(body.stamp, BASE),
-        child_frame_id: name,
-        transform: geometry_msgs::Transform {
-            translation: vector(&place.coords),
-            rotation: geometry_msgs::Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 },
-        },
-    });
+    let upright = |place: Point| Pose::from_parts(place.into(), nalgebra::UnitQuaternion::identity());
+    let transforms = arms.chain(neck).map(|(name, place)| transform(body.stamp, BASE, &name, &upright(place)));
     tf2_msgs::TFMessage { transforms: transforms.collect() }
 }
 

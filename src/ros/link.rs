@@ -4,6 +4,7 @@
 //! done at the start or by the watch. Dropping the link does not unregister from the calling thread's point of view: hand it
 //! to [`super::node::leave`], which gives it a second.
 
+mod diagnostics;
 mod services;
 mod show;
 
@@ -36,6 +37,12 @@ const JOINT_HERTZ: (f64, f64) = (40.0, 400.0);
 const THIRTY_HERTZ: (f64, f64) = (20.0, 35.0);
 /// Anything goes.
 const ANY_RATE: (f64, f64) = (0.0, f64::INFINITY);
+
+/// The share of their top speeds that the arms are given: the motion limits ask for 0.75 rad/s of a shoulder's 2 rad/s, and
+/// with a third more an arm catches up after a pause without lunging.
+const SPEED_RATIO: f64 = 0.5;
+/// The robot's own time-out, told again because another program may have changed it: the hold after silence rests on it.
+const COMMAND_TIMEOUT_SECONDS: f64 = 0.2;
 
 /// How the link is made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,15 +86,21 @@ impl RobotLink {
     /// Where the master does not register something, or the system has no thread to give.
     pub fn connect(node: &Node, settings: LinkSettings, sink: Sink) -> Result<Self, RosError> {
         let commands = if settings.is_dry_run { None } else { Some(CommandTopics::advertise()?) };
+        if let Some(commands) = &commands {
+            commands.prepare_arms()?;
+        }
         let showing = Showing::advertise()?;
         let depth = NewestDepth::default();
         let subscriptions = subscribe(&sink, &depth)?;
-        let monitors = subscriptions.iter().map(|subscription| subscription.monitor.clone()).collect();
+        let monitors: Vec<Monitor> = subscriptions.iter().map(|subscription| subscription.monitor.clone()).collect();
         let services = services::serve(&sink)?;
         let ended = Arc::new(AtomicBool::new(false));
         Watch::new(node.master(), &node.name(), sink, subscriptions)
+            .guarding(commanding_topics())
             .start(Arc::clone(&ended))
             .map_err(|error| RosError::thread("the watch over the ROS master", error))?;
+        diagnostics::start(node.name(), showing.clone(), monitors.clone(), Arc::clone(&ended))
+            .map_err(|error| RosError::thread("diagnostics", error))?;
         Ok(Self { node: node.clone(), commands, showing, monitors, depth, ended, _services: services })
     }
 
@@ -120,11 +133,6 @@ impl RobotLink {
     pub fn topics(&self) -> Vec<TopicReport> {
         let now = now();
         self.monitors.iter().map(|monitor| monitor.report(now)).collect()
-    }
-
-    /// Publishes the topics' health on `/diagnostics`; once a second is usual.
-    pub fn publish_diagnostics(&self) {
-        self.showing.diagnose(&encode::diagnostics(now(), &self.node.name(), &self.topics()));
     }
 }
 
@@ -253,6 +261,33 @@ impl CommandTopics {
             enable: advertise("/robot/set_super_enable", 1)?,
         })
     }
+}
+
+impl CommandTopics {
+    /// Tells the robot how fast its arms may go and how long a command holds, whatever another program told it before.
+    fn prepare_arms(&self) -> Result<(), RosError> {
+        for side in Side::BOTH {
+            let told = [
+                (self.speed_ratio.get(side), SPEED_RATIO, "set_speed_ratio"),
+                (self.timeout.get(side), COMMAND_TIMEOUT_SECONDS, "joint_command_timeout"),
+            ];
+            for (publisher, data, what) in told {
+                send(publisher, std_msgs::Float64 { data }, what)
+                    .map_err(|error| RosError::registration(what, error))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The topics that command the robot, before remappings: a foreign node on one of them is named. The stop is not among them:
+/// whoever sees the robot may stop it.
+fn commanding_topics() -> Vec<String> {
+    let limbs = Side::BOTH.into_iter().flat_map(|side| {
+        ["joint_command", "set_speed_ratio", "joint_command_timeout"].map(|word| format!("/robot/limb/{side}/{word}"))
+    });
+    let switch = ["reset", "enable"].map(|word| format!("/robot/set_super_{word}"));
+    limbs.chain(switch).collect()
 }
 
 fn both<T: Message>(word: &str) -> Result<PerSide<Publisher<T>>, RosError> {

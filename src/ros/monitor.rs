@@ -17,7 +17,7 @@ pub fn now() -> Stamp {
 /// What a topic's messages did lately.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TopicReport {
-    /// The topic as it was asked for, before remappings.
+    /// The topic, as the master knows it.
     pub topic: String,
     /// Its type.
     pub kind: String,
@@ -58,7 +58,10 @@ struct State {
 /// One topic's monitor. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(super) struct Monitor {
+    /// As it was asked for.
     pub(super) topic: String,
+    /// As the master knows it, after remappings.
+    pub(super) resolved: String,
     kind: String,
     required: bool,
     expected_hertz: (f64, f64),
@@ -70,7 +73,13 @@ impl Monitor {
         let (least, most) = expected_hertz;
         let settings = FreshnessSettings::new(least, most, Duration::from_millis(500));
         let state = State { freshness: Freshness::new(settings), unusable: 0, publishers: Vec::new() };
-        Self { topic: topic.to_owned(), kind, required, expected_hertz, state: Arc::new(Mutex::new(state)) }
+        let (topic, resolved) = (topic.to_owned(), topic.to_owned());
+        Self { topic, resolved, kind, required, expected_hertz, state: Arc::new(Mutex::new(state)) }
+    }
+
+    /// The same under the name that the master knows.
+    pub(super) fn resolved_as(self, resolved: String) -> Self {
+        Self { resolved, ..self }
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> T {
@@ -98,7 +107,7 @@ impl Monitor {
 
     pub(super) fn report(&self, now: Stamp) -> TopicReport {
         self.with(|state| TopicReport {
-            topic: self.topic.clone(),
+            topic: self.resolved.clone(),
             kind: self.kind.clone(),
             age_seconds: state.freshness.age(now).map(|age| age.as_secs_f64()),
             hertz: state.freshness.rate(now),

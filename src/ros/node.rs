@@ -101,17 +101,36 @@ impl Node {
         let _ = self.log.send(line);
     }
 
+    /// The name that remappings and namespaces make of a name.
+    #[must_use]
+    pub fn resolved(&self, name: &str) -> String {
+        resolved(name)
+    }
+
     /// A private or global parameter as text, where the master has it. Read at the start: rosrust never renews it.
     #[must_use]
     pub fn text_parameter(&self, name: &str) -> Option<String> {
         rosrust::param(name)?.get().ok()
     }
 
-    /// A private or global parameter as a number.
+    /// A parameter as a seed: a whole number, as roslaunch or `_seed:=1` gives it.
     #[must_use]
-    pub fn number_parameter(&self, name: &str) -> Option<f64> {
-        rosrust::param(name)?.get().ok()
+    pub fn seed_parameter(&self, name: &str) -> Option<u64> {
+        let parameter = rosrust::param(name)?;
+        parameter.get::<i32>().ok().and_then(|seed| u64::try_from(seed).ok())
     }
+
+    /// A parameter as a switch; false where the master has none.
+    #[must_use]
+    pub fn switch_parameter(&self, name: &str) -> bool {
+        rosrust::param(name).is_some_and(|parameter| parameter.get().unwrap_or(false))
+    }
+}
+
+/// The name that this process' remappings and namespaces make of a name, as the master knows it. rosrust resolves every name
+/// in the same way, and tells the outcome for parameters only.
+pub(super) fn resolved(name: &str) -> String {
+    rosrust::param(name).map_or_else(|| name.to_owned(), |parameter| parameter.name().to_owned())
 }
 
 /// Gives up what `held` holds (publishers, subscribers, services) and leaves the graph, in at most a second.

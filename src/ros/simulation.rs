@@ -3,6 +3,10 @@
 //! Knows no physics and no node under test: it carries commands in and senses out, in real time, at the rates of the real
 //! robot, with its habits (17 joint names in the order of the alphabet, the grippers' own messages between them).
 
+mod camera;
+
+pub use camera::{DepthPicture, SimulatedCamera};
+
 use super::encode;
 use super::error::RosError;
 use super::link::advertise;
@@ -17,8 +21,8 @@ use crate::supervisor::{EndpointSample, JointSample};
 use crate::time::Stamp;
 use crossbeam_channel::{Receiver, Sender, bounded};
 use rosrust::{Message, Publisher, Subscriber};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -30,6 +34,8 @@ const COMMANDS: usize = 256;
 const QUEUE: usize = 8;
 /// Each gripper says where its finger is at a fifth of the robot's beat.
 const FINGER_BEATS: u64 = 5;
+/// The share of its top speeds at which a real robot moves until it is told otherwise (SDK 1.2.0).
+const SPEED_RATIO: f64 = 0.3;
 /// Contact states are repeated at a tenth of the robot's beat.
 const COLLISION_BEATS: u64 = 10;
 
@@ -56,31 +62,17 @@ pub trait SimulatedRobot: Send {
     fn switch(&mut self, request: SwitchRequest, now: Stamp);
     /// The share of an arm's top speed.
     fn set_speed_ratio(&mut self, side: Side, ratio: f64);
+    /// How long a joint command holds.
+    fn set_command_timeout(&mut self, side: Side, timeout: Duration);
     /// Advances to `now` and tells what is sensed.
     fn step(&mut self, now: Stamp) -> Senses;
-}
-
-/// A depth camera's picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DepthPicture {
-    /// Pixels in a row, and rows.
-    pub size: (u32, u32),
-    /// Millimetres row by row; 0 is no reading.
-    pub millimetres: Vec<u16>,
-    /// Focal lengths and centre in pixels: fx, fy, cx, cy.
-    pub intrinsics: [f64; 4],
-}
-
-/// Something that takes depth pictures.
-pub trait SimulatedCamera: Send {
-    /// The picture at a moment, of the person in the newest pose.
-    fn picture(&mut self, stamp: Stamp, body: Option<&BodyPose>) -> DepthPicture;
 }
 
 enum Command {
     Joints(Side, JointVector),
     Switch(SwitchRequest),
     SpeedRatio(Side, f64),
+    Timeout(Side, Duration),
 }
 
 struct Topics {
@@ -98,7 +90,8 @@ pub struct SimNode {
     robot: Box<dyn SimulatedRobot>,
     colliding: PerSide<bool>,
     beats: u64,
-    seen: Arc<Mutex<Option<BodyPose>>>,
+    /// Keeps the camera's place latched.
+    mount: Option<Publisher<tf2_msgs::TFMessage>>,
     ended: Arc<AtomicBool>,
     _subscribers: Vec<Subscriber>,
 }
@@ -114,7 +107,8 @@ impl SimNode {
     ///
     /// # Errors
     /// Where the master does not register something, or the system has no thread to give.
-    pub fn new(node: &Node, robot: Box<dyn SimulatedRobot>) -> Result<Self, RosError> {
+    pub fn new(node: &Node, mut robot: Box<dyn SimulatedRobot>) -> Result<Self, RosError> {
+        Side::BOTH.into_iter().for_each(|side| robot.set_speed_ratio(side, SPEED_RATIO));
         let (sender, commands) = bounded(COMMANDS);
         let this = Self {
             topics: Topics::advertise()?,
@@ -122,7 +116,7 @@ impl SimNode {
             robot,
             colliding: PerSide::default(),
             beats: 0,
-            seen: Arc::default(),
+            mount: None,
             ended: Arc::default(),
             _subscribers: listen(&sender)?,
         };
@@ -138,13 +132,7 @@ impl SimNode {
     /// # Errors
     /// Where the master does not register it, or the system has no thread to give.
     pub fn add_camera(&mut self, camera: Box<dyn SimulatedCamera>) -> Result<(), RosError> {
-        let image = advertise("/camera/depth/image_raw", 1)?;
-        let information = advertise("/camera/depth/camera_info", 1)?;
-        let (seen, ended) = (Arc::clone(&self.seen), Arc::clone(&self.ended));
-        thread::Builder::new()
-            .name("depth-camera".into())
-            .spawn(move || take_pictures(camera, &image, &information, &seen, &ended))
-            .map_err(|error| RosError::thread("the depth camera", error))?;
+        self.mount = Some(camera::start(camera, &self.ended)?);
         Ok(())
     }
 
@@ -169,6 +157,7 @@ impl SimNode {
                 Command::Joints(side, joints) => self.robot.command_joints(side, &joints, now),
                 Command::Switch(request) => self.robot.switch(request, now),
                 Command::SpeedRatio(side, ratio) => self.robot.set_speed_ratio(side, ratio),
+                Command::Timeout(side, timeout) => self.robot.set_command_timeout(side, timeout),
             }
         }
         let senses = self.robot.step(now);
@@ -200,9 +189,6 @@ impl SimNode {
         }
         for body in &senses.bodies {
             drop(self.topics.transforms.send(encode::skeleton(body)));
-        }
-        if let Some(body) = senses.bodies.last() {
-            *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = Some(*body);
         }
     }
 }
@@ -257,6 +243,13 @@ fn listen(commands: &Sender<Command>) -> Result<Vec<Subscriber>, RosError> {
         all.push(on(&format!("/robot/limb/{side}/set_speed_ratio"), commands, move |ratio: std_msgs::Float64| {
             (0.0..=1.0).contains(&ratio.data).then_some(Command::SpeedRatio(side, ratio.data))
         })?);
+        all.push(on(
+            &format!("/robot/limb/{side}/joint_command_timeout"),
+            commands,
+            move |timeout: std_msgs::Float64| {
+                Duration::try_from_secs_f64(timeout.data).ok().map(|timeout| Command::Timeout(side, timeout))
+            },
+        )?);
     }
     all.push(on("/robot/set_super_stop", commands, |_: std_msgs::Empty| Some(Command::Switch(SwitchRequest::Stop)))?);
     all.push(on("/robot/set_super_reset", commands, |_: std_msgs::Empty| Some(Command::Switch(SwitchRequest::Reset)))?);
@@ -281,61 +274,6 @@ fn on<T: Message>(
     rosrust::subscribe(topic, QUEUE, callback).map_err(|error| RosError::registration(topic, error))
 }
 
-fn take_pictures(
-    mut camera: Box<dyn SimulatedCamera>,
-    image: &Publisher<sensor_msgs::Image>,
-    information: &Publisher<sensor_msgs::CameraInfo>,
-    seen: &Mutex<Option<BodyPose>>,
-    ended: &AtomicBool,
-) {
-    let period = Duration::from_secs(1) / 30;
-    let mut next = Instant::now();
-    while !ended.load(Ordering::SeqCst) {
-        // As a real camera's driver: streams start only while someone subscribes.
-        if image.subscriber_count() > 0 || information.subscriber_count() > 0 {
-            let stamp = now();
-            let body = *seen.lock().unwrap_or_else(PoisonError::into_inner);
-            let (picture, figures) = messages(stamp, camera.picture(stamp, body.as_ref()));
-            let _ = information.send(figures);
-            let _ = image.send(picture);
-        }
-        next += period;
-        match next.checked_duration_since(Instant::now()) {
-            Some(rest) => thread::sleep(rest),
-            None => next = Instant::now(),
-        }
-    }
-}
-
-#[expect(non_snake_case, reason = "the message's own field names")]
-fn messages(stamp: Stamp, picture: DepthPicture) -> (sensor_msgs::Image, sensor_msgs::CameraInfo) {
-    let header = encode::header(stamp, "camera_depth_optical_frame");
-    let (width, height) = picture.size;
-    let [fx, fy, cx, cy] = picture.intrinsics;
-    let K = [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0];
-    let image = sensor_msgs::Image {
-        header: header.clone(),
-        height,
-        width,
-        encoding: "16UC1".to_owned(),
-        is_bigendian: 0,
-        step: width * 2,
-        data: picture.millimetres.iter().flat_map(|reading| reading.to_le_bytes()).collect(),
-    };
-    let figures = sensor_msgs::CameraInfo {
-        header,
-        height,
-        width,
-        distortion_model: "plumb_bob".to_owned(),
-        D: vec![0.0; 5],
-        K,
-        R: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-        P: [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
-        ..Default::default()
-    };
-    (image, figures)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -355,13 +293,5 @@ mod tests {
             baxter_core_msgs::JointCommand { command: Vec::new(), ..whole },
         ];
         assert!(spoiled.iter().all(|message| commanded(Side::Left, message).is_none()));
-    }
-
-    #[test]
-    fn a_picture_goes_out_as_a_camera_driver_sends_it_and_is_read_again() {
-        let picture = DepthPicture { size: (4, 2), millimetres: vec![1000; 8], intrinsics: [570.0, 571.0, 1.5, 0.5] };
-        let (image, figures) = messages(Stamp::from_nanoseconds(3), picture);
-        assert_eq!((image.data.len(), figures.K[4]), (16, 571.0));
-        assert_eq!(super::super::decode::depth(image).unwrap().encoding, "16UC1");
     }
 }

@@ -5,6 +5,7 @@
 
 use super::error::RosError;
 use super::monitor::{Monitor, now};
+use super::node::resolved;
 use crate::supervisor::{Input, LinkEvent};
 use rosrust::{Message, Subscriber};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -53,7 +54,8 @@ impl Subscription {
         sink: &Sink,
         decode: impl Fn(T) -> Decoded + Send + Sync + 'static,
     ) -> Result<Self, RosError> {
-        let monitor = Monitor::new(need.topic, T::msg_type(), need.expected_hertz, need.required);
+        let monitor = Monitor::new(need.topic, T::msg_type(), need.expected_hertz, need.required)
+            .resolved_as(resolved(need.topic));
         let (decode, sink, watched) = (Arc::new(decode), Arc::clone(sink), monitor.clone());
         let make: Make = Box::new(move || {
             let (decode, sink, monitor) = (Arc::clone(&decode), Arc::clone(&sink), watched.clone());

@@ -9,7 +9,7 @@
 
 use super::graph::{Graph, topic_types};
 use super::monitor::now;
-use super::node::MASTER_LIMIT;
+use super::node::{MASTER_LIMIT, resolved};
 use super::subscription::{Sink, Subscription};
 use super::xmlrpc::Value;
 use super::xmlrpc::http::{CallError, call_ros};
@@ -48,6 +48,8 @@ pub(super) struct Watch {
     subscriptions: Vec<(Subscription, Instant)>,
     registrations: Registrations,
     is_lost: bool,
+    /// Topics on which nobody else may publish, as the master knows them.
+    guarded: Vec<String>,
     foreign: BTreeSet<(String, String)>,
 }
 
@@ -62,8 +64,14 @@ impl Watch {
             subscriptions: subscriptions.into_iter().map(|subscription| (subscription, begin)).collect(),
             registrations: Registrations::default(),
             is_lost: false,
+            guarded: Vec::new(),
             foreign: BTreeSet::new(),
         }
+    }
+
+    /// Names whoever else publishes on `topics`; they are given as they are before remappings.
+    pub(super) fn guarding(self, topics: Vec<String>) -> Self {
+        Self { guarded: topics.iter().map(|topic| resolved(topic)).collect(), ..self }
     }
 
     /// Starts the thread; it ends soon after `ended` is set, and gives its subscriptions up.
@@ -161,10 +169,9 @@ impl Watch {
 
     /// Names nodes that command the robot beside this one, each once as long as it stays.
     fn name_foreign(&mut self, graph: &Graph) {
-        // Whoever may see the robot may stop it: a console that watches does.
-        let commands = |topic: &&String| topic.starts_with("/robot/") && *topic != "/robot/set_super_stop";
-        let commands = self.registrations.published.iter().filter(commands);
-        let found: BTreeSet<_> = commands
+        let found: BTreeSet<_> = self
+            .guarded
+            .iter()
             .flat_map(|topic| graph.publishers_of(topic).iter().map(move |node| (topic.clone(), node.clone())))
             .filter(|(_, node)| *node != self.node && !ROBOTS_OWN.contains(&node.as_str()))
             .collect();
@@ -177,7 +184,7 @@ impl Watch {
     fn renew_silent(&mut self, graph: &Graph) {
         for (subscription, renewed) in &mut self.subscriptions {
             let monitor = &subscription.monitor;
-            monitor.set_publishers(graph.publishers_of(&monitor.topic).to_vec());
+            monitor.set_publishers(graph.publishers_of(&monitor.resolved).to_vec());
             if monitor.is_silent(now(), SILENCE) && renewed.elapsed() > RENEWAL {
                 // Where it fails, the topic stays silent, is shown as such, and is tried again.
                 let _ = subscription.renew();

@@ -150,6 +150,17 @@ impl World {
         self.arms.get_mut(side).limb.set_speed_ratio(ratio);
     }
 
+    /// `/robot/limb/{s}/joint_command_timeout`: how long a command holds before the arm stays where it is.
+    pub fn set_command_timeout(&mut self, side: Side, timeout: Duration) {
+        self.arms.get_mut(side).limb.set_command_timeout(timeout);
+    }
+
+    /// Where the person's arms are at this moment, metres in `base`: what a camera sees.
+    #[must_use]
+    pub fn person_arms(&self) -> PerSide<super::person::ArmPoints> {
+        self.posture()
+    }
+
     /// Asks something of the robot's switch (`/robot/set_super_stop`, `..._reset`, `..._enable`).
     pub fn switch(&mut self, request: SwitchRequest, now: Stamp) {
         self.switch.ask(request, now);

@@ -6,9 +6,11 @@ use crate::cli::exit::Failure;
 use crate::cli::output::Output;
 use crate::cli::recording::warn;
 use crate::cli::session::{Opening, Session};
+use crate::cli::sim::ros_failure;
+use crate::command::Origin;
 use crate::config::Places;
 use crate::headless::{Report, ScriptedOperator, TrialResult};
-use crate::ros::{environment, node};
+use crate::ros::{Node, environment, node};
 use crate::snapshot::Outcome;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Stdio};
@@ -82,8 +84,9 @@ fn supervise(arguments: &Arguments) -> Result<(), Failure> {
     let (person, mut setup, settings) = person_and_setup(arguments, arguments.seed)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
     let strategy = setup.settings.strategy;
+    let node = Node::start("valet").map_err(ros_failure)?;
     let recording = arguments.record.of_demos(&Places::of_this_machine().demos, settings.recording());
-    let session = Session::open(Opening { setup, person: &person, recording, is_dry_run: false })?;
+    let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: false })?;
     if arguments.headless {
         let result = follow(arguments, &session, strategy.name());
         if let Some(path) = session.close() {
@@ -100,7 +103,7 @@ fn supervise(arguments: &Arguments) -> Result<(), Failure> {
 fn follow(arguments: &Arguments, session: &Session, strategy: &str) -> Result<TrialResult, Failure> {
     let mut output = Output::new(arguments.json);
     let mut operator = ScriptedOperator::new(CONTINUES);
-    let (mut viewer, mut ask) = (session.viewer(), session.asker());
+    let (mut viewer, mut ask) = (session.viewer(), session.asker(Origin::Headless));
     let engine = session.engine().ok_or_else(|| Failure::Fault("the supervisor has ended".into()))?;
     output.line(format!("seed {}, strategy {strategy}", arguments.seed))?;
     let began = Instant::now();

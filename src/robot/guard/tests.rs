@@ -101,6 +101,44 @@ fn a_sudden_start_is_refused_with_its_acceleration() {
     assert_eq!(breach.what, Limit::JointAcceleration { joint: "right_s1".into() });
 }
 
+/// A gentle start to 0.3 rad/s; then a command that is `late` milliseconds late, which holds the place of
+/// `ticks` ticks of motion.
+fn moving_then_late(late: u64, ticks: u64) -> (GuardedLimb<DummyLimb>, u64, JointVector) {
+    let mut limb = guarded();
+    let (mut joints, mut speed, mut now) = (JointVector::from(HOME), 0.0_f64, 1000);
+    for _ in 0..40 {
+        now += 10;
+        limb.observe(at(now), &<[f64; 7]>::from(joints).map(Some));
+        speed = (speed + 0.01).min(0.3);
+        joints[2] += speed * 0.01;
+        limb.command(at(now), &joints).unwrap();
+    }
+    now += 10 + late;
+    limb.observe(at(now), &<[f64; 7]>::from(joints).map(Some));
+    joints[2] += 0.3 * 0.01 * ticks as f64;
+    (limb, now, joints)
+}
+
+#[test]
+fn after_a_late_beat_a_motion_that_goes_on_as_planned_passes() {
+    for (late, ticks) in [(10, 2), (30, 2), (60, 2), (30, 4)] {
+        let (mut limb, now, mut joints) = moving_then_late(late, ticks);
+        limb.command(at(now), &joints).unwrap();
+        joints[2] += 0.003;
+        limb.command(at(now + 10), &joints).unwrap();
+    }
+}
+
+#[test]
+fn a_late_beat_excuses_no_jump_and_no_sudden_stop_that_follows() {
+    let (mut limb, now, mut joints) = moving_then_late(30, 30);
+    assert_eq!(refused(&mut limb, at(now), &joints).what, Limit::JointSpeed { joint: "right_e0".into() });
+    joints[2] -= 0.003 * 28.0;
+    limb.command(at(now), &joints).unwrap();
+    let breach = refused(&mut limb, at(now + 10), &joints);
+    assert_eq!(breach.what, Limit::JointAcceleration { joint: "right_e0".into() });
+}
+
 #[test]
 fn an_arm_that_does_not_follow_is_refused() {
     let mut limb = guarded();

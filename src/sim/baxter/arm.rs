@@ -38,12 +38,13 @@ pub(in crate::sim) struct SimulatedLimb {
     dynamics: ArmDynamics,
     positions: JointVector,
     speed_ratio: f64,
+    timeout: Duration,
     command: Option<(JointVector, Stamp)>,
 }
 
 impl SimulatedLimb {
     pub(in crate::sim) const fn new(model: ArmModel, dynamics: ArmDynamics, positions: JointVector) -> Self {
-        Self { model, dynamics, positions, speed_ratio: 1.0, command: None }
+        Self { model, dynamics, positions, speed_ratio: 1.0, timeout: COMMAND_TIMEOUT, command: None }
     }
 
     pub(in crate::sim) const fn positions(&self) -> &JointVector {
@@ -68,6 +69,11 @@ impl SimulatedLimb {
         }
     }
 
+    /// `/robot/limb/{s}/joint_command_timeout`: how long a command holds.
+    pub(in crate::sim) const fn set_command_timeout(&mut self, timeout: Duration) {
+        self.timeout = timeout;
+    }
+
     /// Forgets what was commanded: after a stop nothing old may be followed.
     pub(in crate::sim) const fn forget(&mut self) {
         self.command = None;
@@ -76,7 +82,7 @@ impl SimulatedLimb {
     /// Moves for `seconds` up to `now`; stays where the command is too old.
     pub(in crate::sim) fn advance(&mut self, now: Stamp, seconds: f64) {
         let Some((goal, at)) = self.command else { return };
-        if now.since(at) > COMMAND_TIMEOUT {
+        if now.since(at) > self.timeout {
             self.command = None;
             return;
         }
