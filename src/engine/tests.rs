@@ -1,7 +1,6 @@
 use super::stop::StopThread;
 use super::*;
 use crate::assembly::{RobotState, SwitchRequest};
-use crate::command::CommandReceipt;
 use crate::kinematics::RobotModel;
 use crate::supervisor::Setup;
 use crossbeam_channel::unbounded;
@@ -103,11 +102,6 @@ impl Bench {
 
     fn told(&self) -> Vec<Told> {
         self.told.try_iter().collect()
-    }
-
-    fn receipts(&self) -> Vec<CommandReceipt> {
-        let receipt = |effect| if let Effect::Receipt(receipt) = effect { Some(receipt) } else { None };
-        self.effects.try_iter().filter_map(receipt).collect()
     }
 }
 
