@@ -6,19 +6,26 @@
 
 use super::camera::{CameraError, Intrinsics};
 use super::depth::{DepthError, DepthImage};
-use super::probe::ProbeImage;
+use super::probe::{BACKGROUND, ProbeImage};
 use crate::geometry::{Finite, Point};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The person is nearer than the empty scene by at least this, in millimetres.
 const EMPTY_MARGIN: u16 = 30;
-/// Nothing of the person is deeper than the neck by more, in metres: hands beside the thighs are about 0.55 m below it.
-const BELOW_NECK: f64 = 0.60;
-/// The head begins this far above the neck, in metres.
-const ABOVE_NECK: f64 = 0.01;
-/// Radius of the head's cylinder, in metres.
+/// Nothing of the person is deeper than the neck by more, in metres: a hanging arm's hand is about 0.75 m below it, further
+/// where the camera looks aslant. This far only where the empty scene takes chair and floor away.
+const BELOW_NECK: f64 = 0.85;
+/// The same without an image of the empty scene: seat and floor begin there.
+const BELOW_NECK_ALONE: f64 = 0.60;
+/// The head begins this far above the neck, in metres: the shoulder that is nearer to a camera that looks aslant stays.
+const ABOVE_NECK: f64 = 0.05;
+/// Radius of the cylinder about the neck in which everything above is head, in metres.
 const HEAD_RADIUS: f64 = 0.16;
+/// How far from the neck's line a leaning head reaches, in metres.
+const HEAD_REACH: f64 = 0.28;
+/// Neighbouring pixels of a head differ by no more, in millimetres; a hand before it is further away.
+const HEAD_STEP: u16 = 25;
 /// Nearest reading that counts, in millimetres: nearer ones are noise in an Xtion.
 const NEAREST: u16 = 400;
 
@@ -117,6 +124,15 @@ impl View<'_> {
         }
     }
 
+    /// The neck in the probe image's camera frame, turned as its pixels are.
+    #[must_use]
+    pub fn probe_neck(&self) -> Point {
+        match self.facing {
+            Facing::LowerEdge => self.neck,
+            Facing::UpperEdge => Point::new(-self.neck.x, -self.neck.y, self.neck.z),
+        }
+    }
+
     /// Fills the probe image with the foreground, turned so that the person faces the lower edge, and lists its pixels row by row.
     ///
     /// # Errors
@@ -132,7 +148,7 @@ impl View<'_> {
         probe.reset(width, height);
         pixels.clear();
         let turned = self.facing == Facing::UpperEdge;
-        let rules = Rules::of(self);
+        let rules = Rules::of(self, width, height);
         for row in 0..height {
             let source = if turned { height - 1 - row } else { row };
             let start = source * width;
@@ -142,13 +158,30 @@ impl View<'_> {
                 let from = if turned { width - 1 - column } else { column };
                 let depth = readings.get(from).copied().unwrap_or(0);
                 let empty = behind.and_then(|behind| behind.get(from)).copied().unwrap_or(0);
-                if rules.keeps(depth, empty, from as f64, source as f64) {
-                    probe.set(column, row, depth);
+                if !rules.keeps(depth, empty) {
+                    continue;
+                }
+                if depth < rules.head_bottom && rules.neck_distance(column, row, depth) <= HEAD_RADIUS {
                     pixels.push(pixel(column, row, depth));
+                } else {
+                    probe.set(column, row, depth);
                 }
             }
         }
+        rules.remove_head(probe, pixels);
+        list(probe, pixels);
         Ok(())
+    }
+}
+
+/// Lists the foreground's pixels row by row.
+fn list(probe: &ProbeImage, pixels: &mut Vec<Pixel>) {
+    pixels.clear();
+    let (width, stride) = (probe.width(), probe.stride());
+    for (row, values) in probe.values().chunks(stride).skip(1).take(probe.height()).enumerate() {
+        for (column, depth) in values.iter().skip(1).take(width).enumerate().filter(|(_, depth)| **depth < BACKGROUND) {
+            pixels.push(pixel(column, row, *depth));
+        }
     }
 }
 
@@ -159,33 +192,51 @@ const fn pixel(column: usize, row: usize, depth: u16) -> Pixel {
 
 /// The rules in millimetres, once for all pixels of an image.
 struct Rules {
+    /// Camera and neck of the probe image.
     camera: Intrinsics,
     neck: Point,
     deepest: u16,
-    head_top: u16,
+    head_bottom: u16,
 }
 
 impl Rules {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the neck's depth has been checked")]
-    fn of(view: &View<'_>) -> Self {
+    fn of(view: &View<'_>, width: usize, height: usize) -> Self {
+        let below = if view.empty.is_some() { BELOW_NECK } else { BELOW_NECK_ALONE };
         Self {
-            camera: view.camera,
-            neck: view.neck,
-            deepest: ((view.neck.z + BELOW_NECK) * 1000.0) as u16,
-            head_top: ((view.neck.z - ABOVE_NECK) * 1000.0) as u16,
+            camera: view.probe_camera(width, height),
+            neck: view.probe_neck(),
+            deepest: ((view.neck.z + below) * 1000.0) as u16,
+            head_bottom: ((view.neck.z - ABOVE_NECK) * 1000.0) as u16,
         }
     }
 
     #[inline]
-    fn keeps(&self, depth: u16, empty: u16, column: f64, row: f64) -> bool {
-        if depth < NEAREST || depth > self.deepest || (empty > 0 && depth.saturating_add(EMPTY_MARGIN) >= empty) {
-            return false;
+    const fn keeps(&self, depth: u16, empty: u16) -> bool {
+        depth >= NEAREST && depth <= self.deepest && (empty == 0 || depth.saturating_add(EMPTY_MARGIN) < empty)
+    }
+
+    /// Distance from the line through the neck along the optical axis, in metres.
+    fn neck_distance(&self, column: usize, row: usize, depth: u16) -> f64 {
+        let point = self.camera.point(column as f64, row as f64, f64::from(depth) / 1000.0);
+        (point.x - self.neck.x).hypot(point.y - self.neck.y)
+    }
+
+    /// Removes what hangs together with the pixels in `head`: the head leans, and the camera may look aslant.
+    fn remove_head(&self, probe: &mut ProbeImage, head: &mut Vec<Pixel>) {
+        while let Some(at) = head.pop() {
+            let (column, row) = (usize::from(at.column), usize::from(at.row));
+            for (column, row) in
+                [(column + 1, row), (column.wrapping_sub(1), row), (column, row + 1), (column, row.wrapping_sub(1))]
+            {
+                let Some(depth) = probe.foreground_at(column, row) else { continue };
+                let joined = depth.abs_diff(at.depth) <= HEAD_STEP && depth < self.head_bottom;
+                if joined && self.neck_distance(column, row, depth) <= HEAD_REACH {
+                    probe.set(column, row, BACKGROUND);
+                    head.push(pixel(column, row, depth));
+                }
+            }
         }
-        if depth >= self.head_top {
-            return true;
-        }
-        let point = self.camera.point(column, row, f64::from(depth) / 1000.0);
-        (point.x - self.neck.x).hypot(point.y - self.neck.y) > HEAD_RADIUS
     }
 }
 
@@ -219,6 +270,28 @@ mod tests {
     fn the_head_goes_and_a_raised_hand_stays() {
         let found = extract(&view(), &image(&[(20, 10, 800), (40, 10, 900), (20, 12, 1050), (3, 3, 1700)])).unwrap();
         assert_eq!(found, [Pixel { column: 40, row: 10, depth: 900 }, Pixel { column: 20, row: 12, depth: 1050 }]);
+    }
+
+    #[test]
+    fn a_head_that_leans_out_of_its_cylinder_goes_whole_and_a_hand_before_it_stays() {
+        let view = View { camera: Intrinsics { fx: 50.0, fy: 50.0, cx: 20.0, cy: 10.0 }, ..view() };
+        let mut set: Vec<(usize, usize, u16)> = (20..35).map(|column| (column, 10, 850)).collect();
+        set.extend([(34, 11, 700), (20, 14, 1100)]);
+        let hand = Pixel { column: 34, row: 11, depth: 700 };
+        let chest = Pixel { column: 20, row: 14, depth: 1100 };
+        assert_eq!(extract(&view, &image(&set)).unwrap(), [hand, chest]);
+        // With a gap outside the cylinder, what lies beyond does not hang together with the head.
+        set.retain(|(column, ..)| *column != 31);
+        let found = extract(&view, &image(&set)).unwrap();
+        assert_eq!(found.iter().map(|pixel| pixel.column).collect::<Vec<_>>(), [32, 33, 34, 34, 20]);
+    }
+
+    #[test]
+    fn without_an_empty_scene_seat_and_floor_are_cut_off_and_with_one_a_hanging_hand_stays() {
+        let seen = image(&[(3, 3, 1750)]);
+        assert!(extract(&view(), &seen).unwrap().is_empty());
+        let empty = image(&[(3, 3, 2000)]);
+        assert_eq!(extract(&View { empty: Some(&empty), ..view() }, &seen).unwrap().len(), 1);
     }
 
     #[test]

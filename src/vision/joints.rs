@@ -119,10 +119,7 @@ impl PoseFinder {
         view.extract(image, &mut self.probe, &mut self.pixels)?;
         self.facing = view.facing;
         let camera = view.probe_camera(image.width(), image.height());
-        let neck = match view.facing {
-            Facing::LowerEdge => view.neck,
-            Facing::UpperEdge => Point::new(-view.neck.x, -view.neck.y, view.neck.z),
-        };
+        let neck = view.probe_neck();
         self.classify(&camera);
         let mut joints = CameraJoints::default();
         for side in Side::BOTH {

@@ -76,6 +76,14 @@ impl ProbeImage {
             && self.values.get((row + 1) * self.stride() + column + 1).is_some_and(|value| *value < BACKGROUND)
     }
 
+    /// The depth of a foreground pixel; `None` for background and outside.
+    #[must_use]
+    pub fn foreground_at(&self, column: usize, row: usize) -> Option<u16> {
+        let index = row.checked_add(1)?.checked_mul(self.stride())?.checked_add(column)? + 1;
+        let value = self.values.get(index).copied().filter(|_| column < self.width && row < self.height)?;
+        (value < BACKGROUND).then_some(value)
+    }
+
     /// The part of the image from one corner to another (excluded). Probes outside it read background, as they do here
     /// where all foreground lies inside.
     #[must_use]

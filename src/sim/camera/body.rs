@@ -8,8 +8,8 @@ use crate::sim::person::ArmPoints;
 use crate::vision::part::{OTHER, Part, SHOULDER_SHARE};
 use nalgebra::Matrix3;
 
-/// The neck's root lies this far above the middle between the shoulders' centres, in metres (as the simulated world has it).
-const NECK: f64 = 0.08;
+/// Radius of the muscles between neck and shoulders, in metres: the neck's root is where they end.
+const NECK_MUSCLES: f64 = 0.05;
 
 /// What a solid belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,7 +102,7 @@ impl Scene {
         Self {
             solids: builder.solids,
             arms: arms.map(|_, points| camera_points(points)),
-            neck: to_camera * (middle + up * NECK),
+            neck: to_camera * (middle + up * (look.slope + NECK_MUSCLES)),
             left: to_camera * across,
             middle: to_camera * middle,
         }
@@ -237,10 +237,10 @@ impl Builder<'_> {
         }
         for side in [1.0, -1.0] {
             let ends = (self.at(-0.01, side * 0.03, look.slope), self.at(-0.005, side * half, 0.005));
-            self.cone(Region::Torso, ends, (0.05 + cloth, look.upper_arm * 0.95 + cloth), true);
+            self.cone(Region::Torso, ends, (NECK_MUSCLES + cloth, look.upper_arm * 0.95 + cloth), true);
         }
         let (top, root) = (self.at(look.head.0, look.head.1, 0.16), self.at(0.0, 0.0, 0.03));
-        self.cone(Region::Torso, (root, top), (0.058, 0.05), false);
+        self.cone(Region::Person, (root, top), (0.058, 0.05), false);
         let head = self.at(look.head.0 * 1.5, look.head.1 * 1.5, 0.27);
         self.ellipsoid(Region::Person, head, axes, [0.098, 0.077, 0.118], false);
     }
