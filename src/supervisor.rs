@@ -25,6 +25,7 @@ pub use warm::WarmStart;
 
 use crate::assembly::{RobotState, StopSource, SwitchRequest};
 use crate::body::{BodyPose, PerSide, Side};
+use crate::geometry::Vector;
 use crate::kinematics::RobotModel;
 use crate::safety::{Reaction, Verdict};
 use crate::sequencing::Trial;
@@ -43,6 +44,13 @@ enum Mode {
     Running,
     /// A trial is held, enabled and still, until the operator says how it goes on.
     Held,
+}
+
+/// A resistance while the arms give way to it: newtons in `base`, in the direction that the strategy is told.
+#[derive(Clone, Copy, Debug)]
+struct Yielding {
+    resistance: Vector,
+    force: Vector,
 }
 
 /// The share of its speed at which a motion goes on under a verdict of slow.
@@ -64,6 +72,8 @@ pub struct Supervisor {
     strategy: StrategyKind,
     pending_strategy: Option<StrategyKind>,
     contact: Option<Contact>,
+    /// The resistance that the arms give way to, and the force when it was found: what is left of it is the difference.
+    yielding: Option<Yielding>,
     contact_since: Option<Stamp>,
     pass_began: Option<Stamp>,
     last_tick: Option<Stamp>,
@@ -90,6 +100,7 @@ impl Supervisor {
             trial: None,
             pending_strategy: None,
             contact: None,
+            yielding: None,
             contact_since: None,
             pass_began: None,
             last_tick: None,
@@ -175,6 +186,7 @@ impl Supervisor {
 
     const fn forget_contact(&mut self) {
         self.contact = None;
+        self.yielding = None;
         self.contact_since = None;
     }
 
@@ -211,7 +223,10 @@ impl Supervisor {
         let listens =
             self.trial.as_ref().is_some_and(|trial| trial.arm() == sample.side && trial.listens_at(&position));
         if self.mode == Mode::Running && listens && self.drive.phase() == drive::Phase::Moving {
-            self.contact = Some(Contact { position, resistance: detection.resistance });
+            let resistance = detection.resistance;
+            self.contact = Some(Contact { position, resistance });
+            self.yielding =
+                self.protection.reading(sample.side).map(|reading| Yielding { resistance, force: reading.force });
             self.contact_since = Some(now);
             self.drive.halt();
         }

@@ -351,6 +351,13 @@ impl Trial {
         reaction.changes
     }
 
+    /// What is still felt where the gripper has given way to: newtons in `base`, in the direction of [`Contact::resistance`].
+    pub fn settled(&mut self, residual: &Vector) {
+        if matches!(self.stage, Stage::Adjust { .. }) {
+            self.strategies.get_mut(self.arm).settled(residual);
+        }
+    }
+
     /// The operator says that it may go on.
     ///
     /// # Errors

@@ -124,7 +124,8 @@ pub struct KernelSettings {
     pub gain: f64,
     /// How far along the path a correction is carried, in metres: about a seventh of the path.
     pub length_scale: f64,
-    /// The first guess of the stiffness in newtons a metre. Too large is safe: the first step is small.
+    /// The first guess of the stiffness in newtons a metre: less than that of a simulated arm and sleeve (350), because
+    /// nothing is felt until the sleeve's play is used up. Too large is safe: the first step is small.
     pub stiffness: f64,
     /// Whether the stiffness is learned from what is still felt after a step.
     pub learn_stiffness: bool,
@@ -132,7 +133,7 @@ pub struct KernelSettings {
 
 impl Default for KernelSettings {
     fn default() -> Self {
-        Self { gain: 0.8, length_scale: 0.08, stiffness: 400.0, learn_stiffness: true }
+        Self { gain: 0.8, length_scale: 0.08, stiffness: 200.0, learn_stiffness: true }
     }
 }
 
@@ -161,7 +162,7 @@ impl Default for OffsetFieldSettings {
             deviation: 0.1,
             noise: 0.005,
             relative_noise: 0.4,
-            stiffness: 400.0,
+            stiffness: 200.0,
             learn_stiffness: true,
         }
     }

@@ -3,7 +3,7 @@
 use super::drive::{Arrival, Phase};
 use super::{Effect, Mode, Supervisor};
 use crate::body::{PerSide, Side};
-use crate::geometry::Point;
+use crate::geometry::{Point, Vector};
 use crate::kinematics::{
     JointVector, Leg, MotionLimits, MotionRefusal, PairMotion, Scene, Target, dressing_orientation, plan_pair,
     plan_postures, start_postures_for,
@@ -112,10 +112,21 @@ impl Supervisor {
 
     fn arrive(&mut self, now: Stamp) {
         let Some(place) = self.leading_place() else { return };
+        let residual = self.residual();
         let Some(trial) = self.trial.as_mut() else { return };
+        if let Some(residual) = residual {
+            trial.settled(&residual);
+        }
         let events = trial.arrived(place);
         self.take_up_pending_strategy(now);
         self.follow(now, events);
+    }
+
+    /// What is left of the resistance that was given way to, now that the arms have arrived.
+    fn residual(&mut self) -> Option<Vector> {
+        let yielding = self.yielding.take()?;
+        let felt = self.protection.reading(self.trial.as_ref()?.arm())?;
+        Some(yielding.resistance + felt.force - yielding.force)
     }
 
     /// Answers a contact, once the arms stand still and the force has fallen below its pause tier.
