@@ -7,6 +7,8 @@ pub mod chapter_5;
 pub mod detectors;
 pub mod figure_4_5;
 pub mod findings;
+pub mod joints;
+pub mod mixtures;
 pub mod synthetic;
 pub mod table_4_1;
 pub mod table_4_2;
@@ -40,5 +42,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
     Experiment { name: "figures-5", title: "Figures 5.2 to 5.7: four scenes", run: chapter_5::figures },
     Experiment { name: "table-5", title: "Chapter 5 on 200 scenes", run: chapter_5::table },
     Experiment { name: "whole-arm", title: "One mixture for the whole arm", run: whole_arm::run },
+    Experiment { name: "joints", title: "Joints of simulated people nobody has seen", run: joints::run },
+    Experiment { name: "mixtures", title: "How many Gaussians the fit finds", run: mixtures::run },
     Experiment { name: "detectors", title: "Detectors of resistance on measured pulls", run: detectors::run },
 ];

@@ -4,7 +4,11 @@
 //! than half of the thesis' mean of pixels. A joint without enough of its own pixels near the place found is not seen: `None`.
 //! Buffers are kept from frame to frame, so a frame costs no allocation once the first has been seen.
 
+mod chain;
+mod mean;
 mod mode;
+
+pub use chain::SegmentLengths;
 
 use super::camera::Intrinsics;
 use super::depth::DepthImage;
@@ -15,7 +19,7 @@ use super::tree::{Forest, NO_VOTE, VOTED, vote_index};
 use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide, Side};
 use crate::geometry::{Point, Pose, Vector};
 use crate::time::Stamp;
-use mode::{ModeFinder, VotePoint};
+use mode::{Mode, ModeFinder, Modes, VotePoint};
 use nalgebra::Matrix3;
 
 /// Every second column and row votes: neighbours tell the same.
@@ -76,10 +80,11 @@ pub struct PoseFinder {
     pixels: Vec<Pixel>,
     classified: Vec<Classified>,
     votes: [Vec<VotePoint>; VOTED],
-    area: [f32; VOTED],
     modes: ModeFinder,
+    lengths: SegmentLengths,
     certainty: f64,
     facing: Facing,
+    camera: Intrinsics,
 }
 
 impl PoseFinder {
@@ -92,11 +97,17 @@ impl PoseFinder {
             pixels: Vec::new(),
             classified: Vec::new(),
             votes: Default::default(),
-            area: [0.0; VOTED],
             modes: ModeFinder::default(),
+            lengths: SegmentLengths::default(),
             certainty: 0.0,
             facing: Facing::default(),
+            camera: Intrinsics::default(),
         }
+    }
+
+    /// Takes a person's own lengths instead of an adult's.
+    pub const fn know_lengths(&mut self, lengths: SegmentLengths) {
+        self.lengths = lengths;
     }
 
     /// The forest.
@@ -120,15 +131,29 @@ impl PoseFinder {
         self.facing = view.facing;
         let camera = view.probe_camera(image.width(), image.height());
         let neck = view.probe_neck();
+        self.camera = camera;
         self.classify(&camera);
+        let candidates = PerSide::from_fn(|side| self.candidates(side, &neck));
+        let chosen = chain::choose(&candidates, &neck, &self.lengths);
         let mut joints = CameraJoints::default();
         for side in Side::BOTH {
-            for joint in Joint::ALL {
-                let estimate = self.locate(side, joint, &camera, &neck);
+            for (joint, mode) in Joint::ALL.into_iter().zip(chosen.get(side)) {
+                let estimate = mode.and_then(|mode| self.estimate(side, joint, &camera, &mode));
                 joints.arms.get_mut(side).set(joint, estimate.map(|found| turned_back(found, view.facing)));
             }
         }
         Ok(joints)
+    }
+
+    /// A joint in the last image by the thesis' rule, the middle of its part; `None` where that is not seen, and for elbow and
+    /// wrist, which the thesis leaves out.
+    #[must_use]
+    pub fn mean_of_part(&self, side: Side, joint: Joint) -> Option<Point> {
+        let found = mean::mean_of_part(&self.classified, &self.camera, side, joint)?;
+        Some(match self.facing {
+            Facing::LowerEdge => found,
+            Facing::UpperEdge => Point::new(-found.x, -found.y, found.z),
+        })
     }
 
     /// The most probable part of each pixel of the last image as it came: labels as in [`super::part`], `NONE` elsewhere.
@@ -174,9 +199,15 @@ impl PoseFinder {
         self.certainty = certain as f64 / (full * self.pixels.len().max(1)) as f64;
     }
 
-    fn locate(&mut self, side: Side, joint: Joint, camera: &Intrinsics, neck: &Point) -> Option<JointEstimate> {
-        let votes = self.votes.get(vote_index(side, joint))?;
-        let mode = self.modes.find(votes, neck)?;
+    /// The places where each joint of an arm may be.
+    fn candidates(&mut self, side: Side, neck: &Point) -> [Modes; Joint::ALL.len()] {
+        let (votes, modes) = (&self.votes, &mut self.modes);
+        Joint::ALL
+            .map(|joint| votes.get(vote_index(side, joint)).map(|votes| modes.find(votes, neck)).unwrap_or_default())
+    }
+
+    /// A joint at a place, where enough of its own pixels lie near.
+    fn estimate(&self, side: Side, joint: Joint, camera: &Intrinsics, mode: &Mode) -> Option<JointEstimate> {
         let area = self.own_area(side, joint, camera, &mode.place);
         (area >= LEAST_AREA).then(|| JointEstimate {
             position: mode.place,

@@ -9,6 +9,7 @@ use super::super::images::{ImageNotes, pictures_in, read_depth, write_labels};
 use super::super::output::{Output, complain};
 use crate::body::{ArmPose, Joint, PerSide};
 use crate::config::write_whole;
+use crate::vision::generic;
 use crate::vision::{CameraJoints, DepthImage, Facing, Forest, PoseFinder, View};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -243,9 +244,7 @@ fn name_of(picture: &Path) -> String {
 }
 
 fn read_forest(file: Option<&Path>) -> Result<Forest, Failure> {
-    let Some(file) = file else {
-        return Err(Failure::Configuration("give a forest with --forest FILE; `valet train` makes one".into()));
-    };
+    let Some(file) = file else { return generic::forest().map_err(Failure::fault) };
     let named = |error: &dyn std::fmt::Display| Failure::Configuration(format!("{}: {error}", file.display()));
     let bytes = std::fs::read(file).map_err(|error| named(&error))?;
     Forest::from_bytes(&bytes).map_err(|error| named(&error))

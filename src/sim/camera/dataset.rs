@@ -127,6 +127,8 @@ pub struct Score {
     pub foreground: (u64, u64, u64),
     /// Distance from each seen joint to its true centre in metres.
     pub errors: [Vec<f64>; Joint::ALL.len()],
+    /// The same for the thesis' mean of the part.
+    pub mean_errors: [Vec<f64>; Joint::ALL.len()],
     /// Joints that are covered, and how many of them were said to be not seen.
     pub covered: (u64, u64),
     /// Joints that can be seen, and how many of them were said to be seen.
@@ -164,7 +166,12 @@ impl Score {
                     .iter()
                     .map(|part| own.get(usize::from(part.label(side))).copied().unwrap_or(0))
                     .sum();
-                self.joint(arm.position(joint), joint, &image.sampled.scene.joint(side, joint), pixels);
+                let truth = image.sampled.scene.joint(side, joint);
+                self.joint(arm.position(joint), joint, &truth, pixels);
+                let mean = finder.mean_of_part(side, joint).filter(|_| pixels >= COVERED_PIXELS);
+                if let (Some(mean), Some(errors)) = (mean, self.mean_errors.get_mut(joint.index())) {
+                    errors.push((mean - truth).norm());
+                }
             }
         }
         Ok(())
@@ -182,6 +189,20 @@ impl Score {
         if let Some(errors) = self.errors.get_mut(joint.index()) {
             errors.push((found - truth).norm());
         }
+    }
+
+    /// Takes another score in.
+    pub fn add(&mut self, other: &Self) {
+        let sum = |into: &mut (u64, u64), from: &(u64, u64)| *into = (into.0 + from.0, into.1 + from.1);
+        sum(&mut self.pixels, &other.pixels);
+        sum(&mut self.covered, &other.covered);
+        sum(&mut self.visible, &other.visible);
+        self.parts.iter_mut().zip(&other.parts).for_each(|(into, from)| sum(into, from));
+        self.foreground.0 += other.foreground.0;
+        self.foreground.1 += other.foreground.1;
+        self.foreground.2 += other.foreground.2;
+        self.errors.iter_mut().zip(&other.errors).for_each(|(into, from)| into.extend(from));
+        self.mean_errors.iter_mut().zip(&other.mean_errors).for_each(|(into, from)| into.extend(from));
     }
 
     /// Share of pixels that got their part, over all pixels.
@@ -207,17 +228,27 @@ impl Score {
     /// Mean and 95th percentile of the errors of one joint, or of all, in metres.
     #[must_use]
     pub fn error(&self, joint: Option<Joint>) -> (f64, f64) {
-        let mut errors: Vec<f64> = match joint {
-            Some(joint) => self.errors.get(joint.index()).cloned().unwrap_or_default(),
-            None => self.errors.concat(),
-        };
-        if errors.is_empty() {
-            return (f64::NAN, f64::NAN);
-        }
-        errors.sort_by(f64::total_cmp);
-        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-        (mean, errors.get(errors.len() * 95 / 100).copied().unwrap_or(f64::NAN))
+        mean_and_most(&self.errors, joint)
     }
+
+    /// The same for the thesis' mean of the part.
+    #[must_use]
+    pub fn mean_error(&self, joint: Option<Joint>) -> (f64, f64) {
+        mean_and_most(&self.mean_errors, joint)
+    }
+}
+
+fn mean_and_most(errors: &[Vec<f64>; Joint::ALL.len()], joint: Option<Joint>) -> (f64, f64) {
+    let mut errors: Vec<f64> = match joint {
+        Some(joint) => errors.get(joint.index()).cloned().unwrap_or_default(),
+        None => errors.concat(),
+    };
+    if errors.is_empty() {
+        return (f64::NAN, f64::NAN);
+    }
+    errors.sort_by(f64::total_cmp);
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    (mean, errors.get(errors.len() * 95 / 100).copied().unwrap_or(f64::NAN))
 }
 
 fn share(part: u64, whole: u64) -> f64 {
