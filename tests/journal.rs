@@ -4,13 +4,16 @@
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
+use valet::body::Side;
+use valet::command::{Command, Origin};
+use valet::geometry::{Pose, Wrench};
 use valet::headless::{ScriptedOperator, VirtualTrial};
 use valet::record::{
     Header, JournalError, JournalWriter, Recorder, RecorderNotice, Replay, Step, Told, read, write_bag, write_csv,
 };
 use valet::sim::world::WorldSetup;
-use valet::snapshot::Watermark;
-use valet::supervisor::{Input, Setup};
+use valet::snapshot::{Level, Outcome, Watermark};
+use valet::supervisor::{Effect, EndpointSample, Input, LinkEvent, Setup};
 use valet::time::Stamp;
 
 /// Records the first `seconds` of a simulated trial, with a flush after each second as the recorder does it.
@@ -250,4 +253,60 @@ fn the_tools_of_ros_accept_the_bag() {
     {
         assert!(text.contains(words), "{words} in {text}");
     }
+}
+
+/// A journal of a real afternoon with words in every place that can hold some.
+fn wordy(folder: &Path, began: Stamp) -> PathBuf {
+    let operator = |command| Input::Operator { command, origin: Origin::OperatorKey };
+    let words = || "SECRET-WORDS".to_owned();
+    let endpoint = |stamp| {
+        let sample = EndpointSample { side: Side::Left, stamp, pose: Pose::identity(), wrench: Wrench::default() };
+        (Input::Endpoint(sample), Vec::new())
+    };
+    let setup = Setup { profile: "p-01".into(), ..Setup::default() };
+    let header = Header::of(&setup, "notes = \"SECRET-WORDS\"\n", began.nanoseconds()).unwrap();
+    let mut writer = JournalWriter::create(folder, &header).unwrap();
+    let log = Effect::Log { level: Level::Error, text: words() };
+    let ended = Effect::TrialEnded { outcome: Outcome::Fault, reason: words() };
+    let stopped = Effect::Stopped { outcome: Outcome::OperatorStop, cause: words() };
+    let steps = [
+        endpoint(began),
+        (operator(Command::Note(words())), vec![log]),
+        (operator(Command::SelectProfile(words())), Vec::new()),
+        (Input::SetpointRefused { side: Side::Left, reason: words() }, vec![stopped]),
+        (Input::Link(LinkEvent::ForeignPublisher { topic: words(), node: words() }), vec![ended]),
+        endpoint(began + Duration::from_secs(1)),
+    ];
+    for (second, (input, effects)) in (0..).zip(steps) {
+        writer.step(began + Duration::from_secs(second), &input, &effects, 0).unwrap();
+    }
+    writer.finish().unwrap()
+}
+
+/// Every file below a folder, one after the other.
+fn bytes_below(folder: &Path) -> Vec<u8> {
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files.iter().flat_map(|path| if path.is_dir() { bytes_below(path) } else { std::fs::read(path).unwrap() }).collect()
+}
+
+#[test]
+fn an_anonymous_export_leaks_no_word_and_no_absolute_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let seconds = 1_795_392_138_u32;
+    let path = wordy(folder.path(), Stamp::ZERO + Duration::from_secs(u64::from(seconds)));
+    let holds = |bytes: &[u8], pattern: &[u8]| bytes.windows(pattern.len()).any(|window| window == pattern);
+    for (anonymous, name) in [(false, "plain"), (true, "anonymous")] {
+        let out = folder.path().join(name);
+        write_csv(&path, &out, anonymous).unwrap();
+        write_bag(&path, &out.join("trial.bag"), anonymous).unwrap();
+        let bytes = bytes_below(&out);
+        assert_eq!(holds(&bytes, b"SECRET-WORDS"), !anonymous, "{name}");
+        // The hour is enough to find somebody in a calendar: no second of it may stand there, in words or in a stamp.
+        let stamped = (0..3600).any(|later| holds(&bytes, &(seconds - 1800 + later).to_le_bytes()));
+        assert_eq!(stamped, !anonymous, "{name}");
+        assert!(!anonymous || !holds(&bytes, b"17953"), "{name}");
+    }
+    let events = std::fs::read_to_string(folder.path().join("anonymous/events.csv")).unwrap();
+    assert!(events.contains("stop") && events.contains("end"), "what happened is still told: {events}");
 }

@@ -46,6 +46,7 @@ fn write_step(writer: &mut Bag, mut step: Step, began: Option<Stamp>) -> io::Res
             Input::Endpoint(sample) => shift(&mut sample.stamp),
             Input::Joints(sample) => shift(&mut sample.stamp),
             Input::Robot(state) => shift(&mut state.stamp),
+            Input::Body(pose) => shift(&mut pose.stamp),
             _ => {}
         }
         step.effects.retain(|effect| !matches!(effect, Effect::Log { .. }));

@@ -40,6 +40,12 @@ const COMPRESSED_IMAGE: Kind = Kind {
     definition: include_str!("definitions/CompressedImage.msg"),
 };
 
+const TRANSFORMS: Kind = Kind {
+    name: "tf2_msgs/TFMessage",
+    md5: "94810edda583a504dfda3829e70d7eec",
+    definition: include_str!("definitions/TFMessage.msg"),
+};
+
 /// A ROS 1 channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Channel {
@@ -48,7 +54,7 @@ pub(super) struct Channel {
 }
 
 /// All ROS 1 channels. Their order is their number in [`RosMessage::channel`](super::ros_message::RosMessage).
-pub(super) const CHANNELS: [Channel; 8] = [
+pub(super) const CHANNELS: [Channel; 9] = [
     Channel { topic: "/robot/limb/left/endpoint_state", kind: ENDPOINT_STATE },
     Channel { topic: "/robot/limb/right/endpoint_state", kind: ENDPOINT_STATE },
     Channel { topic: "/robot/joint_states", kind: JOINT_STATE },
@@ -57,6 +63,7 @@ pub(super) const CHANNELS: [Channel; 8] = [
     Channel { topic: "/robot/limb/right/joint_command", kind: JOINT_COMMAND },
     Channel { topic: "/rosout", kind: LOG },
     Channel { topic: "/camera/depth/image_raw/compressedDepth", kind: COMPRESSED_IMAGE },
+    Channel { topic: "/tf", kind: TRANSFORMS },
 ];
 
 /// Numbers of channels in [`CHANNELS`]; those of a side begin with the left one.
@@ -66,6 +73,7 @@ pub(super) const STATE: usize = 3;
 pub(super) const COMMANDS: usize = 4;
 pub(super) const ROSOUT: usize = 6;
 pub(super) const DEPTH: usize = 7;
+pub(super) const BODY: usize = 8;
 
 /// The channel with the exact record of what came in.
 pub(super) const INPUT: &str = "/valet/input";

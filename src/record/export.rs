@@ -2,6 +2,7 @@
 
 use super::error::JournalError;
 use super::{Reading, Step, read};
+use crate::command::Command;
 use crate::supervisor::{Effect, Input};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -19,8 +20,8 @@ pub struct CsvFiles {
     events: csv::Writer<File>,
 }
 
-/// Writes a journal as CSV files into a folder. Time counts from the first step. With `anonymous`, free text (the log and
-/// notes) is left out.
+/// Writes a journal as CSV files into a folder. Time counts from the first step. With `anonymous`, free text (the log, notes,
+/// causes and reasons) is left out.
 ///
 /// # Errors
 /// [`JournalError`] where the journal cannot be read or a file cannot be written.
@@ -139,7 +140,13 @@ impl CsvFiles {
                 let words = [format!("{:?}", state.button), format!("{:?}", state.source)];
                 self.robot.write_record(std::iter::once(time.to_owned()).chain(flags).chain(words))
             }
-            Input::Operator { command: crate::command::Command::Note(_), .. } if anonymous => Ok(()),
+            // Causes and reasons can hold the names of machines, files and people: only what happened is kept.
+            Input::Operator {
+                command: Command::Note(_) | Command::SelectProfile(_) | Command::SelectGarment(_),
+                ..
+            } if anonymous => Ok(()),
+            Input::SetpointRefused { .. } if anonymous => self.events.write_record([time, "refused", ""]),
+            Input::Link(_) if anonymous => self.events.write_record([time, "link", ""]),
             Input::Operator { command, .. } => self.events.write_record([time, "operator", &command.to_string()]),
             Input::SetpointRefused { reason, .. } => self.events.write_record([time, "refused", reason]),
             Input::Link(event) => self.events.write_record([time, "link", &format!("{event:?}")]),
@@ -170,6 +177,8 @@ impl CsvFiles {
                 self.waypoints.write_record(row(time, side.name(), cells))
             }
             Effect::Log { level, text } if !anonymous => self.events.write_record([time, level.name(), text]),
+            Effect::Stopped { outcome, .. } if anonymous => self.events.write_record([time, "stop", outcome.words()]),
+            Effect::TrialEnded { outcome, .. } if anonymous => self.events.write_record([time, "end", outcome.words()]),
             Effect::Stopped { cause, .. } => self.events.write_record([time, "stop", cause]),
             Effect::TrialEnded { outcome, reason } => {
                 self.events.write_record([time, "end", &format!("{}: {reason}", outcome.words())])

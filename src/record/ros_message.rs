@@ -1,9 +1,9 @@
 //! The ROS 1 messages that stand beside the exact record: the same samples as Baxter sends them, in ROS 1's encoding.
 
-use super::channels::{COMMANDS, DEPTH, ENDPOINTS, JOINTS, ROSOUT, STATE};
+use super::channels::{BODY, COMMANDS, DEPTH, ENDPOINTS, JOINTS, ROSOUT, STATE};
 use crate::assembly::RobotState;
-use crate::body::Side;
-use crate::geometry::Vector;
+use crate::body::{BodyPose, Joint, Side};
+use crate::geometry::{Point, Vector};
 use crate::snapshot::Level;
 use crate::supervisor::{Effect, EndpointSample, Input, JointSample};
 use crate::time::Stamp;
@@ -71,6 +71,7 @@ pub(super) fn of_input(input: &Input) -> Option<RosMessage> {
         Input::Endpoint(sample) => Some(endpoint(sample)),
         Input::Joints(sample) => Some(joints(sample)),
         Input::Robot(state) => Some(robot_state(state)),
+        Input::Body(pose) => Some(body(pose)),
         _ => None,
     }
 }
@@ -148,4 +149,21 @@ fn robot_state(state: &RobotState) -> RosMessage {
     }
     encoder.byte(state.button.to_wire()).byte(state.source.to_wire());
     RosMessage { channel: STATE, bytes: encoder.0 }
+}
+
+/// A person's pose as a skeleton tracker sends it: a transform from `base` for each joint that was seen.
+fn body(pose: &BodyPose) -> RosMessage {
+    let arms = pose.arms.iter().flat_map(|(side, arm)| {
+        let seen = Joint::DRESSED.into_iter().filter_map(|joint| Some((joint, arm.position(joint)?)));
+        seen.map(move |(joint, place)| (format!("{side}_{joint}_1"), place))
+    });
+    let neck = pose.neck.map(|neck| ("neck_1".to_owned(), neck.position));
+    let frames: Vec<(String, Point)> = arms.chain(neck).collect();
+    let mut encoder = Encoder::default();
+    encoder.length(frames.len());
+    for (name, place) in &frames {
+        encoder.header(pose.stamp, "base").text(name).vector(&place.coords);
+        encoder.number(0.0).number(0.0).number(0.0).number(1.0);
+    }
+    RosMessage { channel: BODY, bytes: encoder.0 }
 }
