@@ -23,7 +23,7 @@ pub mod xmlrpc;
 
 pub use decode::DepthFrame;
 pub use error::RosError;
-pub use link::{Commander, LinkSettings, RobotLink, RosLimb, Showing, StopPublisher};
+pub use link::{Commander, DepthWatcher, LinkSettings, RobotLink, RosLimb, Showing, StopPublisher};
 pub use monitor::TopicReport;
 pub use node::{Node, leave};
 pub use simulation::SimNode;

@@ -96,6 +96,11 @@ impl Recording {
         }
     }
 
+    /// Whether depth images are recorded too.
+    pub(super) const fn has_depth(&self) -> bool {
+        self.settings.depth
+    }
+
     fn refusal(&self, error: &JournalError) -> Failure {
         let help = if self.is_asked { "" } else { "; name another folder with --record DIR, or run with --no-record" };
         Failure::Configuration(format!("{error}{help}"))

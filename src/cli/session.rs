@@ -14,11 +14,11 @@ use crate::engine::{Engine, Inbox, Outlet, SharedSnapshot};
 use crate::kinematics::{JointVector, RobotModel};
 use crate::record::{Recorder, RecorderNotice};
 use crate::robot::{GuardSettings, GuardedLimb, GuardedPair};
-use crate::ros::{Commander, LinkSettings, Node, RobotLink, RosLimb, Showing, TopicReport, leave};
+use crate::ros::{Commander, DepthWatcher, LinkSettings, Node, RobotLink, RosLimb, Showing, TopicReport, leave};
 use crate::snapshot::{Freshness, RecorderView, Shared, Snapshot, TopicHealth};
 use crate::supervisor::{Effect, Input, LinkEvent, Setup, Supervisor};
 use crate::time::Stamp;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, OnceLock, Weak};
 use std::time::Duration;
 
 /// A topic that has been silent for longer is shown as stale; what moves the robot has limits of its own.
@@ -146,6 +146,9 @@ impl Session {
             });
             GuardedPair::new(guarded, model.clone(), limits.clone())
         });
+        if let Some(recorder) = recorder.as_ref().filter(|_| opening.recording.is_some_and(|place| place.has_depth())) {
+            link.watch_depth(depth_recorder(Arc::downgrade(recorder)));
+        }
         let link = Arc::new(link);
         let master = node.master().to_owned();
         let shell = ShellView { link: Arc::clone(&link), recorder: recorder.clone(), master };
@@ -229,10 +232,25 @@ impl Session {
         let Self { shell: ShellView { link, recorder: shared, .. }, recorder, node, .. } = self;
         // The recorder is finished by its last owner.
         drop(shared);
-        let path = recorder.and_then(Arc::into_inner).map(|recorder| recorder.finish().path.display().to_string());
+        let path = recorder.map(|recorder| {
+            let path = recorder.status().path.display().to_string();
+            drop(Arc::into_inner(recorder));
+            path
+        });
         leave((link, node));
         path
     }
+}
+
+/// Records every depth image. Does not keep the recorder alive: it ends with the session.
+fn depth_recorder(recorder: Weak<Recorder>) -> DepthWatcher {
+    Box::new(move |frame| {
+        let Some(recorder) = recorder.upgrade() else { return };
+        // What is no depth image is told by the topic's own health.
+        let Ok(image) = frame.image() else { return };
+        let [width, height] = [frame.width, frame.height].map(|pixels| u32::try_from(pixels).unwrap_or(u32::MAX));
+        recorder.offer_depth(frame.stamp, width, height, &Arc::from(image.millimetres()));
+    })
 }
 
 /// Whether the operator has just switched recording on or off.

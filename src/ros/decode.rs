@@ -11,6 +11,7 @@ use crate::body::{PerSide, Side};
 use crate::geometry::{Pose, Vector, Wrench};
 use crate::supervisor::{EndpointSample, JointSample};
 use crate::time::Stamp;
+use crate::vision::{DepthError, DepthImage, RawImage};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use std::io;
 
@@ -125,6 +126,25 @@ pub struct DepthFrame {
     pub data: Vec<u8>,
     /// The camera matrix, row by row, in pixels; `None` until one was heard.
     pub camera_matrix: Option<[f64; 9]>,
+}
+
+impl DepthFrame {
+    /// The image in millimetres.
+    ///
+    /// # Errors
+    /// [`DepthError`] where size, step or encoding are not those of a depth image.
+    pub fn image(&self) -> Result<DepthImage, DepthError> {
+        // A size that does not fit is larger than any camera's, and refused as such.
+        let number = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+        DepthImage::decode(&RawImage {
+            width: number(self.width),
+            height: number(self.height),
+            step: number(self.step),
+            encoding: &self.encoding,
+            big_endian: self.big_endian,
+            data: &self.data,
+        })
+    }
 }
 
 /// A depth image; `None` where its size and its data disagree.

@@ -25,7 +25,7 @@ use crate::robot::PortError;
 use crate::supervisor::Input;
 use rosrust::{Message, Publisher, Service};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Messages that may wait for their callback at 100 Hz: 80 ms, beyond which they are stale anyway.
 const QUEUE: usize = 8;
@@ -126,6 +126,11 @@ impl RobotLink {
     #[must_use]
     pub fn newest_depth(&self) -> Option<DepthFrame> {
         self.depth.take()
+    }
+
+    /// Shows every depth image to `watcher` from now on. The first watcher stays.
+    pub fn watch_depth(&self, watcher: DepthWatcher) {
+        let _ = self.depth.watcher.0.set(watcher);
     }
 
     /// How the subscribed topics do.
@@ -308,11 +313,28 @@ fn send<T: Message>(publisher: &Publisher<T>, message: T, what: &str) -> Result<
 struct NewestDepth {
     frame: Arc<Mutex<Option<DepthFrame>>>,
     matrix: Arc<Mutex<Option<[f64; 9]>>>,
+    watcher: Arc<Watcher>,
+}
+
+/// Sees every depth image as it comes, in the thread that receives it: must be quick.
+pub type DepthWatcher = Box<dyn Fn(&DepthFrame) + Send + Sync>;
+
+/// Who sees every depth image; nobody at first.
+#[derive(Default)]
+struct Watcher(OnceLock<DepthWatcher>);
+
+impl std::fmt::Debug for Watcher {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_tuple("Watcher").field(&self.0.get().is_some()).finish()
+    }
 }
 
 impl NewestDepth {
     fn put(&self, mut frame: DepthFrame) {
         frame.camera_matrix = *self.matrix.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(watcher) = self.watcher.0.get() {
+            watcher(&frame);
+        }
         *self.frame.lock().unwrap_or_else(PoisonError::into_inner) = Some(frame);
     }
 
