@@ -8,7 +8,9 @@ mod latch;
 mod verdict;
 mod watchdog;
 
-pub use force::{CatchLimits, ForceGuard, GuardError, GuardSample, GuardSettings, HARD_CAP_NEWTONS, Tiers, Zone};
+pub use force::{
+    CatchLimits, ExpectedPull, ForceGuard, GuardError, GuardSample, GuardSettings, HARD_CAP_NEWTONS, Tiers, Zone,
+};
 pub use latch::{StopPhase, StopRefusal, StopState};
 pub use verdict::{Reaction, Verdict};
 pub use watchdog::{Watch, WatchSettings, Watchdogs};

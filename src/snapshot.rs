@@ -163,7 +163,7 @@ impl RobotView {
     /// What the robot said, as long as that still holds.
     #[must_use]
     pub fn fresh(&self, now: Stamp) -> Option<&RobotState> {
-        self.state.as_ref().filter(|state| now.since(state.stamp).as_secs_f64() <= self.deadline_seconds)
+        self.state.as_ref().filter(|state| now.distance(state.stamp).as_secs_f64() <= self.deadline_seconds)
     }
 }
 

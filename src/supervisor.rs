@@ -157,6 +157,7 @@ impl Supervisor {
 
     fn obey_verdict(&mut self, now: Stamp, verdict: &Verdict) {
         match verdict.reaction {
+            Reaction::Clear | Reaction::Advise if self.protection.retreats() => self.drive.set_ratio(SLOW_RATIO),
             Reaction::Clear | Reaction::Advise => self.drive.set_ratio(1.0),
             Reaction::Slow => self.drive.set_ratio(SLOW_RATIO),
             Reaction::Hold => self.hold(now, &verdict.cause),
@@ -176,6 +177,7 @@ impl Supervisor {
     fn enter_stop(&mut self, now: Stamp, cause: &str, outcome: Outcome) {
         self.drive.drop_motion();
         self.forget_contact();
+        self.protection.end_retreat();
         self.effects.push(Effect::Stopped { outcome, cause: cause.to_owned() });
         self.log(now, Level::Error, "stop", format!("emergency stop (software): {cause}"));
         self.show_stop(now, cause);
@@ -210,16 +212,19 @@ impl Supervisor {
         }
         self.mode = Mode::Held;
         self.forget_contact();
+        self.protection.end_retreat();
         self.drive.halt();
         self.log(now, Level::Warning, "supervisor", format!("hold: {cause}"));
         self.show_hold(now, cause);
     }
 
     fn see_endpoint(&mut self, now: Stamp, sample: &EndpointSample) {
-        let detection = self.protection.see_endpoint(now, sample, &self.drive);
+        let position = sample.pose.translation.vector.into();
+        let dressing = self.trial.as_ref().filter(|trial| trial.arm() == sample.side && trial.listens());
+        let passed = dressing.map(|trial| trial.metres_at(&position));
+        let detection = self.protection.see_endpoint(now, sample, passed, &self.drive);
         self.show_force(sample);
         let Some(detection) = detection else { return };
-        let position = sample.pose.translation.vector.into();
         let listens =
             self.trial.as_ref().is_some_and(|trial| trial.arm() == sample.side && trial.listens_at(&position));
         if self.mode == Mode::Running && listens && self.drive.phase() == drive::Phase::Moving {
@@ -275,6 +280,10 @@ impl Supervisor {
                 self.protection.watchdogs_mut().foreign_publisher(topic, node);
                 self.hold(now, &format!("{node} publishes on {topic}: end it, then continue"));
             }
+            LinkEvent::ForeignPublisherGone { topic, node } => {
+                self.protection.watchdogs_mut().foreign_publisher_gone(topic, node);
+                self.log(now, Level::Information, "link", format!("{node} publishes on {topic} no more"));
+            }
             LinkEvent::WorkerLost { name } => {
                 self.stop(now, &format!("the part of valet called {name} died"), Outcome::Fault);
             }
@@ -295,6 +304,7 @@ impl Supervisor {
                 let text = format!("{lost} steps are missing in the record: this computer or its disk is overloaded");
                 self.log(now, Level::Warning, "recorder", text);
             }
+            LinkEvent::ConsoleBeat => self.protection.watchdogs_mut().console(now),
             LinkEvent::ConsoleLost => self.hold(now, "the console is gone"),
         }
         self.show_link(event);

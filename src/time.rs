@@ -68,6 +68,12 @@ impl Stamp {
         self.checked_since(earlier).unwrap_or_default()
     }
 
+    /// The time between two moments, whichever is the earlier.
+    #[must_use]
+    pub fn distance(self, other: Self) -> Duration {
+        Duration::from_nanos(self.0.abs_diff(other.0))
+    }
+
     /// The moment a span later, or `None` where it is beyond the range.
     #[must_use]
     pub fn checked_add(self, span: Duration) -> Option<Self> {
@@ -102,6 +108,7 @@ mod tests {
         assert_eq!(late.checked_since(early), Some(Duration::from_nanos(4)));
         assert_eq!(early.checked_since(late), None);
         assert_eq!(early.since(late), Duration::ZERO);
+        assert_eq!((early.distance(late), late.distance(early)), (Duration::from_nanos(4), Duration::from_nanos(4)));
     }
 
     #[test]

@@ -19,10 +19,13 @@ use crate::snapshot::{Freshness, RecorderView, Shared, Snapshot, TopicHealth};
 use crate::supervisor::{Effect, Input, LinkEvent, Setup, Supervisor};
 use crate::time::Stamp;
 use std::sync::{Arc, OnceLock, Weak};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A topic that has been silent for longer is shown as stale; what moves the robot has limits of its own.
 const TOPIC_DEADLINE_SECONDS: f64 = 0.5;
+
+/// How often whoever looks at the snapshots shows that it lives: four times within the watchdog's limit of a second.
+const CONSOLE_BEAT: Duration = Duration::from_millis(250);
 
 /// What a session is opened with.
 pub(super) struct Opening<'a> {
@@ -212,8 +215,12 @@ impl Session {
     pub(super) fn viewer(&self) -> impl FnMut() -> Option<Snapshot> + use<> {
         let shared = self.engine.as_ref().map(Engine::snapshots);
         let shell = self.shell.clone();
-        let mut last = None;
+        let (inbox, mut last, mut beat) = (self.engine.as_ref().map(Engine::inbox), None, None);
         move || {
+            if let Some(inbox) = inbox.as_ref().filter(|_| beat.is_none_or(|at: Instant| at.elapsed() > CONSOLE_BEAT)) {
+                inbox.offer(Input::Link(LinkEvent::ConsoleBeat));
+                beat = Some(Instant::now());
+            }
             let newest = shared.as_ref().map(SharedSnapshot::newest)?;
             if last == Some(newest.now) {
                 return None;

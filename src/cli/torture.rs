@@ -42,6 +42,7 @@ struct Summary {
     virtual_seconds: f64,
     steps: u64,
     setpoints: u64,
+    refused: u64,
     stops: u64,
     iterations: u64,
     completed: u64,
@@ -55,6 +56,7 @@ impl Summary {
         self.virtual_seconds += result.seconds;
         self.steps += result.steps;
         self.setpoints += result.setpoints;
+        self.refused += result.refused;
         self.stops += u64::from(result.stops);
         self.iterations += u64::from(result.iterations);
         self.completed += u64::from(result.outcome == Some(crate::snapshot::Outcome::Completed));

@@ -6,19 +6,26 @@
 //! do and more. A [`Witness`] that shares no code with the supervisor watches what leaves it. A trial is repeated exactly
 //! by its seed.
 
+mod crash;
+mod guards;
+mod invariant;
 mod lane;
 mod operator;
 mod plan;
 mod witness;
 
-pub use witness::{Invariant, Violation};
+pub use invariant::{Invariant, Violation};
 
+use crate::assembly::SwitchRequest;
+use crate::body::Side;
 use crate::command::Origin;
-use crate::kinematics::RobotModel;
+use crate::kinematics::{JointVector, RobotModel};
 use crate::sim::World;
 use crate::snapshot::Outcome;
 use crate::supervisor::{Effect, Input, Supervisor};
 use crate::time::Stamp;
+use crash::Record;
+use guards::Guards;
 use lane::Lane;
 use operator::ErringOperator;
 use plan::TrialPlan;
@@ -33,6 +40,8 @@ use witness::Witness;
 const BEAT: Duration = Duration::from_millis(10);
 /// The operator looks at the screen ten times a second.
 const BEATS_PER_LOOK: u32 = 10;
+/// After the end of a trial it is watched for so many beats more: nothing may move then.
+const BEATS_AFTER_THE_END: u32 = 60;
 /// Virtual runs begin here, far enough from zero that a clock can be set back.
 const START: Stamp = Stamp::from_nanoseconds(1_000_000_000_000);
 
@@ -47,6 +56,8 @@ pub struct TortureResult {
     pub steps: u64,
     /// Joint positions that left for an arm.
     pub setpoints: u64,
+    /// Joint positions that a guard refused.
+    pub refused: u64,
     /// Emergency stops.
     pub stops: u32,
     /// Passes of the garment that ended.
@@ -87,6 +98,8 @@ struct TortureTrial {
     lane: Lane,
     operator: ErringOperator,
     witness: Witness,
+    guards: Guards,
+    record: Option<Record>,
     fingerprint: DefaultHasher,
     result: TortureResult,
 }
@@ -101,6 +114,8 @@ impl TortureTrial {
             world: World::new(&plan.world).map_err(|error| error.to_string())?,
             lane: Lane::new(plan.lane.clone(), seed),
             operator: ErringOperator::new(seed, plan.errs),
+            guards: Guards::new(&model, &limits),
+            record: Record::begin(seed, &plan.setup)?,
             witness: Witness::new(model, limits),
             fingerprint: DefaultHasher::new(),
             result: TortureResult { seed, ..TortureResult::default() },
@@ -110,6 +125,7 @@ impl TortureTrial {
 
     fn run(mut self) -> TortureResult {
         let mut world_time = START;
+        let mut left = BEATS_AFTER_THE_END;
         for beat in 0..self.plan.beats {
             world_time = world_time + BEAT;
             let now = self.plan.clock(START, world_time);
@@ -117,17 +133,30 @@ impl TortureTrial {
             if beat % BEATS_PER_LOOK == 0 {
                 self.look(now);
             }
-            if self.result.violation.is_some() || self.result.outcome.is_some() {
+            left -= u32::from(self.result.outcome.is_some());
+            if self.result.violation.is_some() || left == 0 {
                 break;
             }
+        }
+        if let Some(Err((invariant, text))) = self.record.take().map(Record::crash) {
+            self.violate(world_time, invariant, text);
         }
         self.result.seconds = world_time.since(START).as_secs_f64();
         self.result.fingerprint = self.fingerprint.finish();
         self.result
     }
 
+    fn violate(&mut self, now: Stamp, invariant: Invariant, text: String) {
+        let violation = Violation { invariant, at_seconds: now.seconds(), text };
+        self.result.violation.get_or_insert(violation);
+    }
+
     fn beat(&mut self, world_time: Stamp, now: Stamp) {
         let seconds = world_time.since(START).as_secs_f64();
+        if self.plan.restarts(seconds) {
+            // The robot's computer was started anew: its motors are off, and nobody here asked for that.
+            self.world.switch(SwitchRequest::Disable, world_time);
+        }
         let said = self.world.step(world_time).into_inputs();
         for input in self.lane.pass(seconds, said) {
             self.step(world_time, now, &input);
@@ -137,7 +166,13 @@ impl TortureTrial {
 
     fn look(&mut self, now: Stamp) {
         let seen = self.supervisor.snapshot(now);
-        self.witness.look(now, seen.trial.phase);
+        if let Err((invariant, text)) = self.witness.look(now, &seen) {
+            self.violate(now, invariant, text);
+        }
+        if self.result.outcome.is_some() {
+            // The trial is over, and nobody begins another one.
+            return;
+        }
         let Some((command, origin)) = self.operator.act(&seen) else { return };
         let world_time = now;
         self.step(world_time, now, &Input::Operator { command, origin });
@@ -149,25 +184,45 @@ impl TortureTrial {
         }
         let effects = self.supervisor.step(now, input);
         self.result.steps += 1;
+        self.guards.observe(now, input, self.supervisor.is_stopped());
         self.result.violation = self.witness.judge(now, input, &effects);
+        if let Some(Err(reason)) = self.record.as_mut().map(|record| record.step(now, input, &effects)) {
+            self.violate(now, Invariant::RecordSurvives, reason);
+        }
         for effect in &effects {
-            self.carry_out(world_time, effect);
+            self.carry_out(world_time, now, effect);
         }
     }
 
-    fn carry_out(&mut self, world_time: Stamp, effect: &Effect) {
+    fn carry_out(&mut self, world_time: Stamp, now: Stamp, effect: &Effect) {
         // JSON, since its bytes are what a record of the trial would hold.
         serde_json::to_string(effect).unwrap_or_default().hash(&mut self.fingerprint);
         match effect {
-            Effect::Setpoint { side, joints } => {
-                self.result.setpoints += 1;
-                self.world.command_joints(*side, joints, world_time);
-            }
+            Effect::Setpoint { side, joints } => self.send(world_time, now, *side, joints),
             Effect::Switch(request) => self.world.switch(*request, world_time),
             Effect::Stopped { .. } => self.result.stops += 1,
             Effect::Iteration { .. } => self.result.iterations += 1,
             Effect::TrialEnded { outcome, .. } => self.result.outcome = Some(*outcome),
             _ => {}
+        }
+    }
+}
+
+impl TortureTrial {
+    /// Sends joint positions through the guards, as a session does it; a refusal goes back to the supervisor.
+    fn send(&mut self, world_time: Stamp, now: Stamp, side: Side, joints: &JointVector) {
+        match self.guards.pass(now, side, joints) {
+            Ok(()) => {
+                self.result.setpoints += 1;
+                if let Err((invariant, text)) = self.witness.judge_sent(now, side, joints) {
+                    self.violate(now, invariant, text);
+                }
+                self.world.command_joints(side, joints, world_time);
+            }
+            Err(reason) => {
+                self.result.refused += 1;
+                self.step(world_time, now, &Input::SetpointRefused { side, reason });
+            }
         }
     }
 }

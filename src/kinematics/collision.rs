@@ -46,10 +46,32 @@ struct ArmShape {
     shape: Shape,
 }
 
+/// A capsule with the ball round it: two capsules are no closer than their balls, and balls are compared in a few
+/// multiplications.
+#[derive(Clone, Copy, Debug)]
+struct Bounded {
+    capsule: Capsule,
+    centre: Point,
+    reach: f64,
+}
+
+impl Bounded {
+    fn new(capsule: Capsule) -> Self {
+        let centre = nalgebra::center(&capsule.start, &capsule.end);
+        Self { capsule, centre, reach: (capsule.end - centre).norm() + capsule.radius }
+    }
+
+    /// True where the surfaces are certainly at least `distance` apart. A number that is none makes nothing certain.
+    fn is_beyond(&self, other: &Self, distance: f64) -> bool {
+        let least = distance + self.reach + other.reach;
+        least <= 0.0 || (self.centre - other.centre).norm_squared() >= least * least
+    }
+}
+
 /// All shapes of the robot.
 #[derive(Clone, Debug)]
 pub(super) struct CollisionModel {
-    body: Vec<(Shape, Capsule)>,
+    body: Vec<(Shape, Bounded)>,
     arms: PerSide<Vec<ArmShape>>,
     /// Pairs of one arm's shapes that may meet.
     within: PerSide<Vec<(usize, usize)>>,
@@ -86,6 +108,13 @@ enum Pair {
 }
 
 impl Tightest {
+    /// Offers a pair with the distance that it is to keep. Most pairs are too far apart to be the tightest: their balls say so.
+    fn compare(&mut self, one: &Bounded, other: &Bounded, least: f64, pair: Pair) {
+        if !one.is_beyond(other, self.room + least) {
+            self.offer(one.capsule.distance(&other.capsule) - least, pair);
+        }
+    }
+
     fn offer(&mut self, room: f64, pair: Pair) {
         // A distance that is no number counts as contact: nothing may pass because of it.
         if room < self.room || room.is_nan() {
@@ -111,7 +140,7 @@ impl CollisionModel {
             match holder {
                 None => model.body.extend(shapes.map(|shape| {
                     let capsule = Capsule { start: shape.start, end: shape.end, radius: shape.radius };
-                    (shape, capsule)
+                    (shape, Bounded::new(capsule))
                 })),
                 Some((side, link)) => {
                     model.arms.get_mut(side).extend(shapes.map(|shape| ArmShape { link, shape }));
@@ -135,29 +164,27 @@ impl CollisionModel {
     pub(super) fn tightest(&self, frames: &PerSide<ArmFrames>, scene: &Scene) -> Tightest {
         let mut tightest = Tightest { room: f64::INFINITY, pair: Pair::None };
         let placed = frames.map(|side, frames| placed(self.arms.get(side), frames));
+        let person: Vec<Bounded> = scene.person.iter().map(|part| Bounded::new(part.shape)).collect();
         for (left_index, left) in placed.left.iter().enumerate() {
             for (right_index, right) in placed.right.iter().enumerate() {
-                tightest
-                    .offer(left.capsule.distance(&right.capsule) - SELF_MARGIN, Pair::Arms(left_index, right_index));
+                tightest.compare(&left.shape, &right.shape, SELF_MARGIN, Pair::Arms(left_index, right_index));
             }
         }
         for (side, arm) in placed.iter() {
             for &(index, other_index) in self.within.get(side) {
                 if let (Some(part), Some(other)) = (arm.get(index), arm.get(other_index)) {
-                    let room = part.capsule.distance(&other.capsule) - SELF_MARGIN;
-                    tightest.offer(room, Pair::Same(side, index, other_index));
+                    tightest.compare(&part.shape, &other.shape, SELF_MARGIN, Pair::Same(side, index, other_index));
                 }
             }
             for (index, part) in arm.iter().enumerate() {
                 // The body holds link 0, so link 2 is three moving joints away.
                 if part.link + 1 >= APART {
                     for (body_index, (_, body)) in self.body.iter().enumerate() {
-                        tightest.offer(part.capsule.distance(body) - SELF_MARGIN, Pair::Body(side, index, body_index));
+                        tightest.compare(&part.shape, body, SELF_MARGIN, Pair::Body(side, index, body_index));
                     }
                 }
-                for (person_index, person) in scene.person.iter().enumerate() {
-                    let room = part.capsule.distance(&person.shape) - scene.margin;
-                    tightest.offer(room, Pair::Person(side, index, person_index));
+                for (person_index, person) in person.iter().enumerate() {
+                    tightest.compare(&part.shape, person, scene.margin, Pair::Person(side, index, person_index));
                 }
             }
         }
@@ -197,7 +224,7 @@ fn pairs_within(side: Side, shapes: &[ArmShape], chain: &Chain) -> Vec<(usize, u
     let held = postures.map(|joints| placed(shapes, &chain.frames(&joints)));
     let overlap = |index: usize, other: usize| {
         held.iter().any(|parts| match (parts.get(index), parts.get(other)) {
-            (Some(part), Some(other)) => part.capsule.distance(&other.capsule) < SELF_MARGIN,
+            (Some(part), Some(other)) => part.shape.capsule.distance(&other.shape.capsule) < SELF_MARGIN,
             _ => false,
         })
     };
@@ -213,7 +240,7 @@ fn pairs_within(side: Side, shapes: &[ArmShape], chain: &Chain) -> Vec<(usize, u
 
 struct Placed {
     link: usize,
-    capsule: Capsule,
+    shape: Bounded,
 }
 
 fn placed(shapes: &[ArmShape], frames: &ArmFrames) -> Vec<Placed> {
@@ -223,7 +250,8 @@ fn placed(shapes: &[ArmShape], frames: &ArmFrames) -> Vec<Placed> {
         .filter_map(|part| {
             let frame = frames.links.get(part.link)?;
             let (start, end) = (place(frame, &part.shape.start), place(frame, &part.shape.end));
-            Some(Placed { link: part.link, capsule: Capsule { start, end, radius: part.shape.radius } })
+            let shape = Bounded::new(Capsule { start, end, radius: part.shape.radius });
+            Some(Placed { link: part.link, shape })
         })
         .collect()
 }

@@ -94,18 +94,24 @@ pub fn start_postures_for(
         .flat_map(|left| candidates.right.iter().map(move |right| PerSide { left, right }))
         .collect();
     pairs.sort_by(|one, other| room_of(other).total_cmp(&room_of(one)));
-    let mut clear: Vec<(f64, &Pair)> = Vec::new();
-    let mut refusal = None;
+    let mut best: Option<(f64, &Pair)> = None;
+    let (mut clear, mut refusal) = (0, None);
     for pair in &pairs {
-        if clear.len() >= PAIRS {
+        let to_beat = best.map_or(f64::NEG_INFINITY, |(room, _)| room);
+        // Pairs come with falling room in their joints: no later one can be better than this.
+        if clear >= PAIRS || room_of(pair) < to_beat {
             break;
         }
-        match clearance(model, &scenes, pair, limits) {
-            Ok(metres) => clear.push((room_of(pair).min(metres / COMFORTABLE), pair)),
+        match clearance(model, &scenes, pair, limits, to_beat * COMFORTABLE) {
+            Ok(Some(metres)) => {
+                clear += 1;
+                best = Some((room_of(pair).min(metres / COMFORTABLE), pair));
+            }
+            Ok(None) => {}
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
     }
-    match clear.into_iter().max_by(|one, other| one.0.total_cmp(&other.0)) {
+    match best {
         Some((_, pair)) => Ok(pair.map(|_, candidate| candidate.start)),
         None => Err(refusal.unwrap_or(MotionRefusal::NotFinite { side: Side::Left })),
     }
@@ -150,16 +156,24 @@ fn room_of(pair: &Pair) -> f64 {
     pair.left.room.min(pair.right.room)
 }
 
-/// The least distance in metres that a pair keeps beyond what it has to keep.
-fn clearance(model: &RobotModel, scenes: &[&Scene], pair: &Pair, limits: &MotionLimits) -> Result<f64, MotionRefusal> {
+/// The least distance in metres that a pair keeps beyond what it has to keep; `None` as soon as it is less than `at_least`.
+fn clearance(
+    model: &RobotModel,
+    scenes: &[&Scene],
+    pair: &Pair,
+    limits: &MotionLimits,
+    at_least: f64,
+) -> Result<Option<f64>, MotionRefusal> {
     let at = |index: usize| pair.map(|_, candidate| candidate.knots.get(index).copied().unwrap_or(candidate.start));
     let last = scenes.len().saturating_sub(1);
-    scenes
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| index % STRIDE == 0 || *index == last)
-        .map(|(index, scene)| room_at(model, scene, &at(index), limits))
-        .try_fold(f64::INFINITY, |least, room| Ok(least.min(room?)))
+    let mut least = f64::INFINITY;
+    for (index, scene) in scenes.iter().enumerate().filter(|(index, _)| index % STRIDE == 0 || *index == last) {
+        least = least.min(room_at(model, scene, &at(index), limits)?);
+        if least < at_least {
+            return Ok(None);
+        }
+    }
+    Ok(Some(least))
 }
 
 fn ranked_candidates(

@@ -178,6 +178,9 @@ impl Watch {
         for (topic, node) in found.difference(&self.foreign) {
             self.tell(LinkEvent::ForeignPublisher { topic: topic.clone(), node: node.clone() });
         }
+        for (topic, node) in self.foreign.difference(&found) {
+            self.tell(LinkEvent::ForeignPublisherGone { topic: topic.clone(), node: node.clone() });
+        }
         self.foreign = found;
     }
 

@@ -9,7 +9,7 @@
 mod catch;
 mod settings;
 
-pub use settings::{CatchLimits, GuardError, GuardSettings, HARD_CAP_NEWTONS, Tiers, Zone};
+pub use settings::{CatchLimits, ExpectedPull, GuardError, GuardSettings, HARD_CAP_NEWTONS, Tiers, Zone};
 
 use super::{Reaction, Verdict};
 use crate::geometry::{Finite, Vector};
@@ -206,6 +206,12 @@ impl ForceGuard {
         self.soft.detection().or(self.hard.detection())
     }
 
+    /// The pull in newtons that dressing itself needs so many metres from the hand.
+    #[must_use]
+    pub fn expected(&self, metres: f64) -> f64 {
+        self.settings.expected.at(metres)
+    }
+
     /// The smoothed force without bias that the tiers are compared with, in `base`, in newtons.
     #[must_use]
     pub const fn load(&self) -> Option<Vector> {
@@ -249,15 +255,18 @@ impl ForceGuard {
     }
 }
 
-/// The part of a force that is beyond what dressing needs: its length is reduced by what is expected, never below 0.
+/// The part of a force that is beyond what dressing needs: its pull against the motion is reduced by
+/// what is expected, never below 0.
 fn beyond_expected(force: Vector, sample: &GuardSample) -> Vector {
     let expected = if sample.expected_newtons.is_finite() { sample.expected_newtons.max(0.0) } else { 0.0 };
     let speed = sample.velocity.norm();
     if expected <= 0.0 || speed <= STILL_METRES_PER_SECOND {
         return force;
     }
-    // Dressing pulls against the motion.
-    force + sample.velocity * (expected / speed)
+    // Dressing pulls against the motion; where it pulls less than is expected, nothing is left over.
+    let way = sample.velocity / speed;
+    let pull = (-force.dot(&way)).clamp(0.0, expected);
+    force + way * pull
 }
 
 fn hard_cap(force: Vector) -> Verdict {

@@ -16,7 +16,7 @@ use crate::sensing::{Freshness, FreshnessSettings};
 use crate::time::Stamp;
 use force::ForcePlausibility;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// An edge of `enabled` within this span of valet's own request is valet's own: the maker's tool waits 5 s for a disable.
@@ -85,6 +85,8 @@ pub struct Watchdogs {
     console: Freshness,
     last_tick: Option<Stamp>,
     collision: PerSide<bool>,
+    /// Topic and node of each publisher that ought not to be there.
+    foreign: BTreeSet<(String, String)>,
     latched: BTreeMap<Watch, String>,
 }
 
@@ -111,6 +113,7 @@ impl Watchdogs {
             console: stream(0.5, 100.0, settings.console),
             last_tick: None,
             collision: PerSide::default(),
+            foreign: BTreeSet::new(),
             latched: BTreeMap::new(),
             settings,
         }
@@ -206,10 +209,13 @@ impl Watchdogs {
 
     /// Another node publishes where only valet may.
     pub fn foreign_publisher(&mut self, topic: &str, node: &str) {
-        self.latch(
-            Watch::ForeignPublisher,
-            format!("{node} publishes on {topic}, where only valet may: end it, then continue"),
-        );
+        self.foreign.insert((topic.to_owned(), node.to_owned()));
+        self.latch(Watch::ForeignPublisher, foreign_words(topic, node));
+    }
+
+    /// A node that ought not to publish a topic does so no more. What it held stays held until the operator acts.
+    pub fn foreign_publisher_gone(&mut self, topic: &str, node: &str) {
+        self.foreign.remove(&(topic.to_owned(), node.to_owned()));
     }
 
     /// The supervisor's beat.
@@ -263,6 +269,9 @@ impl Watchdogs {
             if *self.collision.get(side) {
                 found.push((Watch::Collision(side), Verdict::new(Reaction::Hold, collision_words(side))));
             }
+        }
+        if let Some((topic, node)) = self.foreign.first() {
+            found.push((Watch::ForeignPublisher, Verdict::new(Reaction::Hold, foreign_words(topic, node))));
         }
         found.push((Watch::RobotState, late("the robot's state", &self.robot, now)));
         found.push((Watch::Pose, self.judge_pose(now)));
@@ -362,6 +371,10 @@ impl Watchdogs {
     pub const fn pose_stream(&self) -> &Freshness {
         &self.pose
     }
+}
+
+fn foreign_words(topic: &str, node: &str) -> String {
+    format!("{node} publishes on {topic}, where only valet may: end it, then continue")
 }
 
 fn collision_words(side: Side) -> String {

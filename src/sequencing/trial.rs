@@ -260,22 +260,25 @@ impl Trial {
     /// How far along the arm a place is, from 0 at the hand to 1 at the shoulder.
     #[must_use]
     pub fn progress_at(&self, place: &Point) -> f64 {
+        let length = polyline_length(self.strategy(self.arm).path());
+        if length <= f64::EPSILON { 0.0 } else { self.metres_at(place) / length }
+    }
+
+    /// How far along the arm's path a place is, in metres from the hand.
+    #[must_use]
+    pub fn metres_at(&self, place: &Point) -> f64 {
         let path = self.strategy(self.arm).path();
-        let length = polyline_length(path);
         let Some(closest) = closest_on_polyline(place, path) else { return 0.0 };
-        if length <= f64::EPSILON {
-            return 0.0;
-        }
         let mut passed = 0.0;
         for (start, end) in path.iter().zip(path.iter().skip(1)) {
             let leg = (end - start).norm();
             let into = (closest - start).norm();
             if into + (end - closest).norm() <= leg + 1e-9 {
-                return (passed + into) / length;
+                return passed + into;
             }
             passed += leg;
         }
-        1.0
+        passed
     }
 
     /// Where the grippers should go now.
@@ -379,14 +382,18 @@ impl Trial {
         }
     }
 
-    /// Gives the pass up and withdraws the garment from `place` along the path that was travelled. Before the first pass
-    /// there is nothing to withdraw from, and the gripper stays.
-    pub fn withdraw(&mut self, place: Point) {
-        if !matches!(self.stage, Stage::Pass | Stage::Adjust { .. } | Stage::AwaitGoAhead(Next::SecondArm)) {
-            return;
+    /// Gives the pass up and withdraws the garment from `place` along the path that was travelled; a withdrawal under way
+    /// goes on. False where the garment is on no arm: then there is nothing to withdraw, and nothing changes.
+    pub fn withdraw(&mut self, place: Point) -> bool {
+        match self.stage {
+            Stage::Withdraw { .. } => true,
+            Stage::Pass | Stage::Adjust { .. } | Stage::AwaitGoAhead(Next::SecondArm) => {
+                self.travelled.push(place);
+                self.start_withdrawal();
+                true
+            }
+            _ => false,
         }
-        self.travelled.push(place);
-        self.start_withdrawal();
     }
 
     fn begin_pass(&mut self, place: Point) -> Result<Vec<TrialEvent>, StrategyError> {

@@ -21,10 +21,10 @@ impl Freshness {
         self.last.map(|last| now.since(last).as_secs_f64())
     }
 
-    /// True as long as the value holds.
+    /// True as long as the value holds. One that lies further ahead than it may lie behind does not: the clock went back.
     #[must_use]
     pub fn is_fresh(&self, now: Stamp) -> bool {
-        self.age(now).is_some_and(|age| age <= self.deadline)
+        self.last.is_some_and(|last| now.distance(last).as_secs_f64() <= self.deadline)
     }
 }
 

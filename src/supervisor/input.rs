@@ -86,6 +86,13 @@ pub enum LinkEvent {
         /// The node.
         node: String,
     },
+    /// A node that published where only this one may has gone.
+    ForeignPublisherGone {
+        /// The topic.
+        topic: String,
+        /// The node.
+        node: String,
+    },
     /// A motion was under way when its handle was dropped, or a worker of the engine died.
     WorkerLost {
         /// Which one.
@@ -106,6 +113,8 @@ pub enum LinkEvent {
         /// Steps that are missing since the last report.
         lost: u64,
     },
+    /// The console took a snapshot: it lives. From the first beat on its silence counts.
+    ConsoleBeat,
     /// The console's process or its terminal is gone.
     ConsoleLost,
 }

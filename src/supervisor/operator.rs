@@ -106,13 +106,16 @@ impl Supervisor {
         if self.mode != Mode::Held {
             return Err("hold first: the garment is withdrawn from a hold".into());
         }
-        self.may_move(now)?;
+        self.protection.may_retreat(now)?;
         let place = self.trial.as_ref().and_then(|trial| self.gripper(now, trial.arm()));
         let (Some(place), Some(trial)) = (place, self.trial.as_mut()) else {
             return Err("the gripper's position is not known".into());
         };
-        trial.withdraw(place);
+        if !trial.withdraw(place) {
+            return Err("the garment is on no arm: continue, or abort".into());
+        }
         self.protection.watchdogs_mut().acknowledge();
+        self.protection.begin_retreat();
         self.mode = Mode::Running;
         self.log(now, Level::Information, "operator", "the garment is withdrawn along the travelled path".into());
         self.show_continue(now);

@@ -10,11 +10,15 @@ use crate::assembly::RobotState;
 use crate::body::{BodyPose, Joint, PerSide, Side};
 use crate::geometry::{Finite, Point, Vector};
 use crate::kinematics::JointVector;
-use crate::safety::{ForceGuard, GuardSample, Reaction, StopState, Verdict, Watchdogs, Zone};
+use crate::safety::{ForceGuard, GuardSample, Reaction, StopState, Verdict, Watch, Watchdogs, Zone};
 use crate::sensing::{Detection, ForceWindow};
 use crate::snapshot::{ForceTier, ForceView, Shared, TierMargin};
 use crate::time::Stamp;
 use std::time::Duration;
+
+/// How much more force than at its beginning a retreat may bring before it is held, in newtons: what noise of 1.5 N does to
+/// the smoothed force (ours).
+const RETREAT_MARGIN_NEWTONS: f64 = 3.0;
 
 /// One arm's senses.
 #[derive(Debug)]
@@ -42,6 +46,8 @@ pub(super) struct Protection {
     robot: Option<RobotState>,
     stop: StopState,
     keep_out: Vec<Point>,
+    /// While the operator has the garment withdrawn from a hold: the most that may be felt, in newtons.
+    retreat: Option<f64>,
 }
 
 impl Protection {
@@ -62,6 +68,7 @@ impl Protection {
             robot: None,
             stop: StopState::default(),
             keep_out: Vec::new(),
+            retreat: None,
         })
     }
 
@@ -73,33 +80,38 @@ impl Protection {
         &mut self.stop
     }
 
-    pub(super) const fn watchdogs(&self) -> &Watchdogs {
-        &self.watchdogs
-    }
-
     pub(super) const fn watchdogs_mut(&mut self) -> &mut Watchdogs {
         &mut self.watchdogs
     }
 
-    /// Takes a force sample. Returns a resistance where the window shows one and the arm's own motion does not explain it.
-    pub(super) fn see_endpoint(&mut self, now: Stamp, sample: &EndpointSample, drive: &Drive) -> Option<Detection> {
+    /// Takes a force sample. `passed` is how far along the person's arm the gripper is in metres, where it dresses one.
+    /// Returns a resistance where the window shows one and the arm's own motion does not explain it, or where force grows
+    /// along the way as it does on a sleeve that is caught.
+    pub(super) fn see_endpoint(
+        &mut self,
+        now: Stamp,
+        sample: &EndpointSample,
+        passed: Option<f64>,
+        drive: &Drive,
+    ) -> Option<Detection> {
         let external = self.settings.wrench.external_force(&sample.wrench, &sample.pose);
         self.watchdogs.force(now, sample.side, sample.stamp, external);
         let zone = Zone::of(&sample.pose.translation.vector.into(), self.keep_out.iter().copied());
         let arm = self.arms.get_mut(sample.side);
         arm.endpoint = sample.pose.is_finite().then_some(*sample);
-        arm.guard.observe(&GuardSample {
+        let guard_sample = GuardSample {
             stamp: sample.stamp,
             force: external,
             velocity: drive.velocity(sample.side),
             acceleration: drive.acceleration(sample.side),
             zone,
-            expected_newtons: 0.0,
-        });
+            expected_newtons: passed.map_or(0.0, |metres| arm.guard.expected(metres)),
+        };
+        arm.guard.observe(&guard_sample);
         // The algorithm's force points the other way than the world's pull: p - step(F) then yields to it.
         arm.window.push(sample.stamp, -external);
         let settled = drive.phase() == Phase::Moving && drive.elapsed().as_secs_f64() > self.settings.settling_seconds;
-        if settled { arm.window.detect() } else { None }
+        if settled { arm.window.detect().or_else(|| arm.guard.catch().map(seen_by_the_robot)) } else { None }
     }
 
     pub(super) fn see_joints(&mut self, now: Stamp, sample: &JointSample) {
@@ -131,12 +143,53 @@ impl Protection {
         if in_trial { self.watchdogs.judge(now) } else { Verdict::clear() }
     }
 
-    /// What the force guards say now, the stricter of both arms.
+    /// What the force guards say now, the stricter of both arms. A retreat takes the pull off: force that would pause only
+    /// slows it, as long as it does not grow.
     pub(super) fn judge_force(&self) -> Verdict {
-        Verdict::strictest(Side::BOTH.map(|side| {
+        let verdict = Verdict::strictest(Side::BOTH.map(|side| {
             let verdict = self.arms.get(side).guard.verdict().clone();
             Verdict { cause: format!("{side} arm: {}", verdict.cause), ..verdict }
-        }))
+        }));
+        let within = self.retreat.zip(self.highest_load()).is_some_and(|(most, load)| load <= most);
+        if within && verdict.reaction == Reaction::Hold {
+            return Verdict { reaction: Reaction::Slow, ..verdict };
+        }
+        verdict
+    }
+
+    /// The higher load of both arms in newtons; `None` where one is not known.
+    fn highest_load(&self) -> Option<f64> {
+        let load = |side| self.arms.get(side).guard.load().map(|load| load.norm());
+        Some(load(Side::Left)?.max(load(Side::Right)?))
+    }
+
+    /// Whether the garment may be withdrawn: as motion in general, but from a hold for force too, and without the person
+    /// being seen, since the way back is the way that was come.
+    ///
+    /// # Errors
+    /// The first thing that is missing, in words.
+    pub(super) fn may_retreat(&mut self, now: Stamp) -> Result<(), String> {
+        self.watchdogs.require(Watch::Pose, false);
+        let ready = self.inputs_ready(now).and_then(|()| self.robot_ready(now));
+        self.watchdogs.require(Watch::Pose, true);
+        ready?;
+        self.highest_load().map(|_| ()).ok_or_else(|| "the force is not known".to_owned())
+    }
+
+    /// The garment is withdrawn from a hold: slowly, and with no more force than there is now.
+    pub(super) fn begin_retreat(&mut self) {
+        self.watchdogs.require(Watch::Pose, false);
+        self.retreat = self.highest_load().map(|load| load + RETREAT_MARGIN_NEWTONS);
+    }
+
+    pub(super) fn end_retreat(&mut self) {
+        self.watchdogs.require(Watch::Pose, true);
+        self.retreat = None;
+    }
+
+    /// True while the garment is withdrawn from a hold.
+    pub(super) const fn retreats(&self) -> bool {
+        self.retreat.is_some()
     }
 
     /// What motion needs.
@@ -144,16 +197,24 @@ impl Protection {
     /// # Errors
     /// The first thing that is missing, in words.
     pub(super) fn readiness(&self, now: Stamp) -> Result<(), String> {
-        if self.stop.is_latched() {
-            return Err(format!("a stop is in force ({}): reset, enable, start", self.stop.cause()));
-        }
-        self.watchdogs.readiness(now)?;
+        self.inputs_ready(now)?;
         for side in Side::BOTH {
             let verdict = self.arms.get(side).guard.verdict();
             if verdict.reaction >= Reaction::Hold {
                 return Err(format!("{side} arm: {}", verdict.cause));
             }
         }
+        self.robot_ready(now)
+    }
+
+    fn inputs_ready(&self, now: Stamp) -> Result<(), String> {
+        if self.stop.is_latched() {
+            return Err(format!("a stop is in force ({}): reset, enable, start", self.stop.cause()));
+        }
+        self.watchdogs.readiness(now)
+    }
+
+    fn robot_ready(&self, now: Stamp) -> Result<(), String> {
         match self.robot(now) {
             Some(robot) if robot.enabled && !robot.stopped && !robot.error => Ok(()),
             Some(_) => Err("the robot is not enabled: enable it first".into()),
@@ -266,6 +327,11 @@ impl Protection {
             .map(|reaction| TierMargin { tier: tier(reaction), limit: tiers.limit(reaction) });
         view.margins = Shared::new(margins.to_vec());
     }
+}
+
+/// A catch in the algorithm's axes, in which the window's resistances are too.
+fn seen_by_the_robot(caught: Detection) -> Detection {
+    Detection { resistance: -caught.resistance, ..caught }
 }
 
 /// The screen's word for a reaction.

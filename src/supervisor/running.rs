@@ -118,6 +118,9 @@ impl Supervisor {
             trial.settled(&residual);
         }
         let events = trial.arrived(place);
+        if !matches!(trial.stage(), Stage::Withdraw { .. }) {
+            self.protection.end_retreat();
+        }
         self.take_up_pending_strategy(now);
         self.follow(now, events);
     }
@@ -194,6 +197,7 @@ impl Supervisor {
         self.trial = None;
         self.forget_contact();
         self.pending_strategy = None;
+        self.protection.end_retreat();
         self.drive.drop_motion();
         for side in Side::BOTH {
             self.effects.push(Effect::Release { side });

@@ -47,6 +47,13 @@ impl LanePlan {
     }
 }
 
+impl LanePlan {
+    /// Nothing arrives from one moment to another, in seconds.
+    pub(super) fn silence_everything(&mut self, from_seconds: f64, to_seconds: f64) {
+        self.silences.push(Silence { topic: Topic::Everything, from_seconds, to_seconds });
+    }
+}
+
 impl Silence {
     fn draw(random: &mut impl Rng, seconds: f64) -> Self {
         let topics = [
@@ -67,12 +74,19 @@ impl Silence {
 /// The master goes and comes back, a foreign node appears, a disk fills, a worker dies, the console goes.
 fn link_events(random: &mut impl Rng, seconds: f64) -> Vec<(f64, LinkEvent)> {
     let at = random.random_range(0.0..seconds);
-    match random.random_range(0..6) {
+    let (topic, node) = ("/robot/limb/left/joint_command".to_owned(), "/other".to_owned());
+    match random.random_range(0..8) {
         0 => vec![(at, LinkEvent::MasterLost), (at + random.random_range(0.1..5.0), LinkEvent::MasterBack)],
-        1 => vec![(
-            at,
-            LinkEvent::ForeignPublisher { topic: "/robot/limb/left/joint_command".into(), node: "/other".into() },
-        )],
+        1 => vec![(at, LinkEvent::ForeignPublisher { topic, node })],
+        6 => vec![
+            (at, LinkEvent::ForeignPublisher { topic: topic.clone(), node: node.clone() }),
+            (at + random.random_range(0.5..10.0), LinkEvent::ForeignPublisherGone { topic, node }),
+        ],
+        // The console beats and falls silent, for a while or for good.
+        7 => (0..20_u32)
+            .map(|beat| at + f64::from(beat) * random.random_range(0.2..0.6))
+            .map(|at| (at, LinkEvent::ConsoleBeat))
+            .collect(),
         2 => vec![(at, LinkEvent::RecorderFailed { reason: "the disk is full".into() })],
         3 => vec![(at, LinkEvent::WorkerLost { name: "planner".into() })],
         4 => vec![(at, LinkEvent::InboxOverflow { lost: 17 })],

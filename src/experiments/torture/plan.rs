@@ -31,6 +31,8 @@ pub(super) struct TrialPlan {
     /// Share of the operator's looks at which something is done that makes no sense.
     pub(super) errs: f64,
     jump: Option<ClockJump>,
+    /// When the robot's computer goes down, in seconds: it comes back with its motors off.
+    restart: Option<f64>,
 }
 
 impl TrialPlan {
@@ -52,10 +54,19 @@ impl TrialPlan {
             world.faults.faults.extend(FaultPlan::from_seed(seed ^ 0x5EED, seconds).faults);
         }
         world.wrench.noise_newtons = random.random_range(0.05..if calm { 0.4 } else { 2.0 });
-        let lane = if calm { LanePlan::default() } else { LanePlan::draw(&mut random, seconds) };
+        let mut lane = if calm { LanePlan::default() } else { LanePlan::draw(&mut random, seconds) };
         let errs = if !calm && random.random_bool(0.5) { random.random_range(0.0..0.2) } else { 0.0 };
         let jump = random.random_bool(0.2).then(|| ClockJump::draw(&mut random, seconds));
-        Self { setup, world, lane, beats: beats(seconds), errs, jump }
+        let restart = random.random_bool(0.1).then(|| random.random_range(1.0..seconds));
+        if let Some(at) = restart {
+            lane.silence_everything(at, at + random.random_range(0.5..5.0));
+        }
+        Self { setup, world, lane, beats: beats(seconds), errs, jump, restart }
+    }
+
+    /// True in the beat in which the robot's computer goes down.
+    pub(super) fn restarts(&self, seconds: f64) -> bool {
+        self.restart.is_some_and(|at| (at..at + 0.01).contains(&seconds))
     }
 
     /// What this computer's clock shows when the robot's shows `world_time`.

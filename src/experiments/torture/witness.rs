@@ -3,15 +3,15 @@
 //! It shares no code with the supervisor's own checks: it keeps its own account of stops, of what has arrived and of what
 //! was sent, and judges each step by that alone.
 
+use super::invariant::{Invariant, Violation};
 use crate::assembly::{RobotState, SwitchRequest};
 use crate::body::{PerSide, Side};
 use crate::command::{Command, Origin};
 use crate::geometry::{Finite, Point};
 use crate::kinematics::{JointVector, MotionLimits, RobotModel};
-use crate::snapshot::TrialPhase;
+use crate::snapshot::{Snapshot, TrialPhase};
 use crate::supervisor::{Effect, Input};
 use crate::time::Stamp;
-use serde::Serialize;
 use std::time::Duration;
 
 /// Within this span an arm that moves must have braked, once it may not move any more: twice the time that the arm needs
@@ -27,69 +27,31 @@ const UNBEARABLE_NEWTONS: f64 = 80.0;
 const STOP_WITHIN: Duration = Duration::from_millis(20);
 /// Setpoints further apart do not belong to one motion: the robot's own command time-out.
 const ONE_MOTION: Duration = Duration::from_millis(200);
-/// How far a first setpoint may be from where the arm is, in radians on a joint.
-const FIRST_STEP: f64 = 0.3;
+/// How far a first setpoint may be from where the arm is, in radians on a joint: six times the robot's own control error.
+const FIRST_STEP: f64 = 0.05;
 
-/// Between two planned postures a joint's spline may swing past its limit by this much, in radians: a tenth of a degree
-/// stands against the robot's own control error of half a degree.
-const RANGE_TOLERANCE: f64 = 1.5e-3;
-
-/// What may never be broken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Invariant {
-    /// The trial of a seed can begin.
-    TrialCanBegin,
-    /// Nothing panics.
-    NoPanic,
-    /// After a stop no setpoint until Reset, Enable and Start were accepted, in this order.
-    StopIsLatched,
-    /// A stop that is asked for reaches the robot's switch in the same step.
-    StopIsAtOnce,
-    /// No setpoint while the robot is disabled, stopped, or its state not known.
-    RobotIsEnabled,
-    /// No motion on stale, missing or non-finite input, beyond braking.
-    InputsAreFresh,
-    /// Every setpoint is finite and inside the joints' ranges.
-    JointRange,
-    /// No joint and no gripper is faster than its limit.
-    Speed,
-    /// The first setpoint of a motion is where the arm is.
-    FirstStep,
-    /// The grippers keep their distance.
-    GripperDistance,
-    /// An unbearable force stops the robot.
-    ForceStops,
-    /// In a hold nothing moves, beyond braking, until the operator acts.
-    HoldHolds,
-    /// Another node may stop and hold, nothing else.
-    ServiceMayOnlyStop,
-    /// Figures of an iteration are finite and not negative.
-    FiguresAreFinite,
-}
-
-/// A broken invariant.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Violation {
-    /// Which one.
-    pub invariant: Invariant,
-    /// When, in seconds of the trial's clock.
-    pub at_seconds: f64,
-    /// What was seen, in words with numbers.
-    pub text: String,
-}
+/// Between two planned postures a joint's spline may swing past its limit by this much, in radians: a ninth of the robot's own
+/// control error of half a degree. What plans and guards allow too.
+const RANGE_TOLERANCE: f64 = 1e-3;
+/// By this factor a joint's acceleration may exceed its limit: it is the second difference of setpoints, which a moving ratio of
+/// time bends a little.
+const ACCELERATION_TOLERANCE: f64 = 1.5;
 
 #[derive(Clone, Copy, Debug)]
 struct Sent {
     at: Stamp,
     joints: JointVector,
     tip: Point,
+    /// Joint speeds since the setpoint before, where that was one beat ago.
+    speed: Option<JointVector>,
 }
 
 /// What the witness knows of one arm.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arm {
     force: Option<Stamp>,
+    /// When a force came in last, whatever it was.
+    heard: Option<Stamp>,
     joints: Option<(Stamp, JointVector)>,
     sent: Option<Sent>,
     moved: Option<Stamp>,
@@ -107,9 +69,12 @@ pub(super) struct Witness {
     unsafe_since: Option<Stamp>,
     unbearable_since: Option<Stamp>,
     held_since: Option<Stamp>,
+    ended: bool,
+    /// How far apart the grippers were sent last, in metres.
+    apart: f64,
 }
 
-type Judged = Result<(), (Invariant, String)>;
+pub(super) type Judged = Result<(), (Invariant, String)>;
 
 impl Witness {
     pub(super) fn new(model: RobotModel, limits: MotionLimits) -> Self {
@@ -122,16 +87,29 @@ impl Witness {
             unsafe_since: None,
             unbearable_since: None,
             held_since: None,
+            ended: false,
+            apart: f64::INFINITY,
         }
     }
 
-    /// Is told ten times a second what the screen shows of the trial.
-    pub(super) fn look(&mut self, now: Stamp, phase: TrialPhase) {
-        if phase == TrialPhase::Holding {
+    /// Judges, ten times a second, what the screen shows.
+    pub(super) fn look(&mut self, now: Stamp, seen: &Snapshot) -> Judged {
+        if seen.trial.phase == TrialPhase::Holding {
             self.held_since.get_or_insert(now);
         } else {
             self.held_since = None;
         }
+        for side in Side::BOTH {
+            let shown = seen.sides.get(side).force.fresh_sample(now).is_some();
+            if shown && !holds(now, self.arms.get(side).heard, FORCE_HOLDS) {
+                return Err((Invariant::StaleDisappears, format!("the {side} force is shown although it is stale")));
+            }
+        }
+        let heard = self.robot.map(|(at, _)| at);
+        if seen.robot.fresh(now).is_some() && !holds(now, heard, ROBOT_HOLDS) {
+            return Err((Invariant::StaleDisappears, "the robot's state is shown although it is stale".into()));
+        }
+        Ok(())
     }
 
     /// Judges a step.
@@ -148,6 +126,7 @@ impl Witness {
             Input::Endpoint(sample) => {
                 let arm = self.arms.get_mut(sample.side);
                 let good = sample.wrench.force.is_finite();
+                arm.heard = Some(now);
                 arm.force = good.then_some(now);
                 let moving = arm.moved.is_some_and(|moved| now.since(moved) <= Duration::from_millis(50));
                 if good && moving && sample.wrench.force.norm() > UNBEARABLE_NEWTONS {
@@ -203,6 +182,9 @@ impl Witness {
                 (Command::Start, 2) => 3,
                 (_, acts) => acts,
             };
+            if *command == Command::Start {
+                self.ended = false;
+            }
             if matches!(command, Command::Continue | Command::Withdraw | Command::GoAhead | Command::Start) {
                 self.held_since = None;
             }
@@ -219,6 +201,7 @@ impl Witness {
                     self.unbearable_since = None;
                 }
                 Effect::Setpoint { side, joints } => self.judge_setpoint(now, *side, joints)?,
+                Effect::TrialEnded { .. } | Effect::Release { .. } => self.ended = true,
                 Effect::Iteration { summary, duration_seconds, .. } => {
                     let figures = [summary.energy, *duration_seconds];
                     if figures.iter().any(|figure| !figure.is_finite() || *figure < 0.0) {
@@ -228,7 +211,7 @@ impl Witness {
                 _ => {}
             }
         }
-        self.judge_distance()
+        Ok(())
     }
 
     /// Keeps account of since when something that motion needs is missing.
@@ -244,7 +227,11 @@ impl Witness {
         }
     }
 
-    fn judge_setpoint(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Judged {
+    /// Judges a setpoint that was decided: may anything be sent at all?
+    fn judge_setpoint(&self, now: Stamp, side: Side, joints: &JointVector) -> Judged {
+        if self.ended {
+            return Err((Invariant::EndedIsStill, "a setpoint although no trial runs".into()));
+        }
         if self.acts != 3 {
             return Err((Invariant::StopIsLatched, format!("a setpoint after {} of the three acts", self.acts)));
         }
@@ -256,18 +243,39 @@ impl Witness {
         if joints.iter().any(|joint| !joint.is_finite()) || limits.breach(joints, RANGE_TOLERANCE).is_some() {
             return Err((Invariant::JointRange, format!("{side} {joints:?}")));
         }
-        let tip: Point = self.model.arm(side).forward(joints).translation.vector.into();
-        let sent = Sent { at: now, joints: *joints, tip };
-        self.judge_step(now, side, &sent)?;
-        self.arms.get_mut(side).sent = Some(sent);
         Ok(())
     }
 
-    fn judge_step(&mut self, now: Stamp, side: Side, sent: &Sent) -> Judged {
+    /// Judges a setpoint that has left: where it leads and how fast.
+    pub(super) fn judge_sent(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Judged {
+        let tip: Point = self.model.arm(side).forward(joints).translation.vector.into();
         let arm = *self.arms.get(side);
-        let Some(before) = arm.sent.filter(|before| holds(now, Some(before.at), ONE_MOTION)) else {
-            return first_step(side, &arm, sent);
-        };
+        let before = arm.sent.filter(|before| holds(now, Some(before.at), ONE_MOTION));
+        let beat = before.as_ref().map(|before| now.since(before.at).as_secs_f64()).filter(|beat| *beat <= 0.02);
+        let speed = before.zip(beat).map(|(before, beat)| (joints - before.joints) / beat.max(0.01));
+        let sent = Sent { at: now, joints: *joints, tip, speed };
+        match &before {
+            None => first_step(side, &arm, &sent)?,
+            Some(before) => self.judge_step(now, side, before, &sent)?,
+        }
+        self.judge_workspace(side, arm.sent.map(|before| before.tip), &sent)?;
+        self.arms.get_mut(side).sent = Some(sent);
+        self.judge_distance()
+    }
+
+    fn judge_workspace(&self, side: Side, before: Option<Point>, sent: &Sent) -> Judged {
+        let (lower, upper) = (self.limits.workspace.lower, self.limits.workspace.upper);
+        let outside = |place: &Point| (lower - place).sup(&(place - upper)).max().max(0.0);
+        // A gripper that is outside already may come back.
+        let allowed = before.map_or(f64::INFINITY, |before| outside(&before));
+        if outside(&sent.tip) > allowed.max(1e-6) {
+            return Err((Invariant::Workspace, format!("the {side} gripper goes to {}", sent.tip)));
+        }
+        Ok(())
+    }
+
+    fn judge_step(&mut self, now: Stamp, side: Side, before: &Sent, sent: &Sent) -> Judged {
+        self.judge_acceleration(side, before, sent)?;
         let step = sent.joints - before.joints;
         if step.amax() < 1e-9 {
             return Ok(());
@@ -289,6 +297,20 @@ impl Witness {
         self.judge_motion(now)
     }
 
+    fn judge_acceleration(&self, side: Side, before: &Sent, sent: &Sent) -> Judged {
+        let Some((was, is)) = before.speed.zip(sent.speed) else { return Ok(()) };
+        let beat = sent.at.since(before.at).as_secs_f64().max(0.01);
+        let most = self.limits.joint_acceleration * ACCELERATION_TOLERANCE;
+        let beyond = ((is - was) / beat).iter().zip(most.iter()).position(|(value, most)| value.abs() > *most);
+        match beyond {
+            None => Ok(()),
+            Some(joint) => {
+                let value = (is - was).get(joint).copied().unwrap_or_default() / beat;
+                Err((Invariant::Acceleration, format!("{side} joint {joint} at {value:.2} rad/s²")))
+            }
+        }
+    }
+
     /// Something moved: was that allowed at this moment?
     fn judge_motion(&self, now: Stamp) -> Judged {
         let too_long = |since: Option<Stamp>| since.filter(|since| now.since(*since) > BRAKING);
@@ -303,13 +325,16 @@ impl Witness {
         Ok(())
     }
 
-    fn judge_distance(&self) -> Judged {
+    fn judge_distance(&mut self) -> Judged {
         let (Some(left), Some(right)) = (self.arms.left.sent, self.arms.right.sent) else { return Ok(()) };
         if left.at != right.at {
             return Ok(());
         }
         let distance = (left.tip - right.tip).norm();
-        if distance < self.limits.minimum_gripper_distance - 1e-3 {
+        // Before the garment is taken the grippers may be further apart than it reaches; they may come closer then.
+        let furthest = self.limits.maximum_gripper_distance.max(self.apart) + 1e-3;
+        self.apart = distance;
+        if !(self.limits.minimum_gripper_distance - 1e-3..=furthest).contains(&distance) {
             return Err((Invariant::GripperDistance, format!("the grippers are {distance:.3} m apart")));
         }
         Ok(())

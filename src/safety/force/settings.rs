@@ -130,6 +130,74 @@ pub struct CatchLimits {
     pub window_metres: f64,
 }
 
+/// How much dressing itself pulls, by the way along the arm: points of metres from the hand and newtons, the way rising.
+/// Between them it is a straight line, before the first it is the first, after the last it is the last.
+///
+/// The default is a gown that slides well along the forearm (Kapusta, horizontal pull; 0 is where it meets the hand).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct ExpectedPull(Vec<[f64; 2]>);
+
+impl Default for ExpectedPull {
+    fn default() -> Self {
+        Self(vec![
+            [0.0, 0.25],
+            [0.05, 0.3],
+            [0.10, 0.4],
+            [0.15, 1.1],
+            [0.20, 2.1],
+            [0.30, 4.5],
+            [0.40, 7.3],
+            [0.47, 9.7],
+        ])
+    }
+}
+
+impl ExpectedPull {
+    /// The most that a profile may expect anywhere, in newtons: a normal pull along the forearm (Kapusta). What is expected
+    /// is taken off work and growth only, never off the tiers.
+    pub const MOST_NEWTONS: f64 = 12.0;
+
+    /// Nothing is expected anywhere.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self(Vec::new())
+    }
+
+    /// The pull in newtons that dressing needs so many metres from the hand.
+    #[must_use]
+    pub fn at(&self, metres: f64) -> f64 {
+        let mut before: Option<[f64; 2]> = None;
+        for &[place, newtons] in &self.0 {
+            if metres <= place {
+                return before
+                    .map_or(newtons, |[start, least]| least + (newtons - least) * (metres - start) / (place - start));
+            }
+            before = Some([place, newtons]);
+        }
+        before.map_or(0.0, |[_, newtons]| newtons)
+    }
+
+    fn validate(&self) -> Result<(), GuardError> {
+        let mut last = f64::NEG_INFINITY;
+        for &[place, newtons] in &self.0 {
+            if !place.is_finite() || place <= last {
+                let range = "a way in metres that rises from point to point";
+                return Err(GuardError::Range { key: "expected", value: place, range });
+            }
+            if !(0.0..=Self::MOST_NEWTONS).contains(&newtons) {
+                return Err(GuardError::Range {
+                    key: "expected",
+                    value: newtons,
+                    range: "from 0 to 12 N at every point",
+                });
+            }
+            last = place;
+        }
+        Ok(())
+    }
+}
+
 /// How the force of an arm is guarded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -150,6 +218,8 @@ pub struct GuardSettings {
     pub hard_catch: CatchLimits,
     /// What a catch asks for: `slow` leaves it to the strategy to give way, `hold` to the operator.
     pub catch_reaction: Reaction,
+    /// What dressing itself pulls, by the way along the arm.
+    pub expected: ExpectedPull,
     /// Force beyond what is expected that does no work worth counting, in newtons: bias that drifts.
     pub work_free_newtons: f64,
     /// Work beyond what dressing needs, in joules, from which the arm slows down. A 60 N/m catch pulled to 10 N is 0.8 J.
@@ -167,6 +237,7 @@ impl Default for GuardSettings {
             catch: CatchLimits { newtons_per_metre: 44.5, least_newtons: 4.0, window_metres: 0.14 },
             hard_catch: CatchLimits { newtons_per_metre: 240.0, least_newtons: 4.0, window_metres: 0.033 },
             catch_reaction: Reaction::Slow,
+            expected: ExpectedPull::default(),
             work_free_newtons: 6.0,
             work_joules: 0.8,
         }
@@ -215,6 +286,7 @@ impl GuardSettings {
         self.tiers.validate()?;
         self.inertia.validate()?;
         self.fast_change.validate()?;
+        self.expected.validate()?;
         if self.catch_reaction < Reaction::Slow {
             return Err(GuardError::CatchReaction(self.catch_reaction));
         }
@@ -270,6 +342,20 @@ mod tests {
         assert!(refused(|settings| settings.work_free_newtons = f64::NAN).contains("work_free"));
         assert!(refused(|settings| settings.work_joules = 9.0).contains("work_joules"));
         assert!(refused(|settings| settings.catch_reaction = Reaction::Clear).contains("slow, hold or stop"));
+    }
+
+    #[test]
+    fn what_is_expected_lies_on_straight_lines_and_has_a_most() {
+        let expected = ExpectedPull::default();
+        assert_eq!((expected.at(-1.0), expected.at(0.0), expected.at(9.0)), (0.25, 0.25, 9.7));
+        assert!((expected.at(0.25) - 3.3).abs() < 1e-9, "half-way from 2.1 to 4.5 N");
+        assert_eq!(ExpectedPull::none().at(0.3), 0.0);
+        let refused_points =
+            |points: &[[f64; 2]]| refused(|settings| settings.expected = ExpectedPull(points.to_vec()));
+        assert!(refused_points(&[[0.0, 12.1]]).contains("from 0 to 12 N"));
+        assert!(refused_points(&[[0.0, f64::NAN]]).contains("from 0 to 12 N"));
+        assert!(refused_points(&[[0.1, 1.0], [0.1, 2.0]]).contains("rises"));
+        assert!(refused_points(&[[f64::NAN, 1.0]]).contains("rises"));
     }
 
     #[test]

@@ -209,6 +209,13 @@ fn s_31_a_foreign_publisher_is_named_and_held() {
     let verdict = watchdogs.judge(at(601));
     assert_eq!(verdict.reaction, Hold);
     assert!(verdict.cause.contains("/other_valet") && verdict.cause.contains("joint_command"));
+    watchdogs.acknowledge();
+    assert_eq!(watchdogs.judge(at(602)).reaction, Hold, "it still publishes");
+    assert!(watchdogs.readiness(at(602)).unwrap_err().contains("/other_valet"));
+    watchdogs.foreign_publisher_gone("/robot/limb/left/joint_command", "/other_valet");
+    assert_eq!(watchdogs.judge(at(603)).reaction, Hold, "the operator has not acted");
+    watchdogs.acknowledge();
+    assert_eq!(watchdogs.judge(at(604)).reaction, Clear);
 }
 
 #[test]

@@ -175,7 +175,7 @@ fn withdrawing_from_the_middle_of_a_pass_goes_back_over_the_contacts() {
     trial.resisted(&Contact { position, resistance: Vector::z() });
     follow(&mut trial);
     let adjusted = position - Vector::new(0.0, 0.0, 0.03);
-    trial.withdraw(Point::new(0.77, -0.48, -0.10));
+    assert!(trial.withdraw(Point::new(0.77, -0.48, -0.10)));
     let mut backward = Vec::new();
     while let Some(target) = leading_target(&trial) {
         backward.push(target);
@@ -187,7 +187,7 @@ fn withdrawing_from_the_middle_of_a_pass_goes_back_over_the_contacts() {
 #[test]
 fn before_the_first_pass_there_is_nothing_to_withdraw_from() {
     let mut trial = trial(1);
-    trial.withdraw(Point::origin());
+    assert!(!trial.withdraw(Point::origin()));
     assert_eq!(trial.stage(), &Stage::StandBack);
 }
 
