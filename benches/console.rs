@@ -2,6 +2,8 @@
 //!
 //! Run with `cargo bench --bench console`. Criterion prints the mean with its interval; the percentiles are printed here.
 
+#![allow(clippy::expect_used, clippy::print_stdout, reason = "a bench may fail loudly, and prints")]
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;

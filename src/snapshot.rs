@@ -176,7 +176,7 @@ pub struct SideView {
     pub path: PathView,
     /// The iterations so far, oldest first.
     pub iterations: Shared<Vec<IterationView>>,
-    /// The most iterations that an arm gets (the thesis' t_max).
+    /// The most iterations that an arm gets (the thesis' `t_max`).
     pub iterations_maximum: u32,
     /// Where along the arm the gripper is: 0 at the hand, 1 at the shoulder; `None` where no iteration runs.
     pub progress: Option<f64>,

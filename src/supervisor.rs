@@ -273,7 +273,7 @@ impl Supervisor {
     fn see_link(&mut self, now: Stamp, event: &LinkEvent) {
         match event {
             LinkEvent::MasterLost => {
-                self.hold(now, "the ROS master does not answer: start roscore again, then continue")
+                self.hold(now, "the ROS master does not answer: start roscore again, then continue");
             }
             LinkEvent::MasterBack => self.log(now, Level::Information, "link", "the ROS master answers".into()),
             LinkEvent::ForeignPublisher { topic, node } => {

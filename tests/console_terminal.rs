@@ -1,6 +1,14 @@
 //! The real program in a pseudo-terminal: it draws, resizes, stops at a key, and gives the terminal back on quitting, on
 //! SIGTERM and SIGHUP, and after a panic, in the order stop the robot, restore the terminal, tell.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::indexing_slicing,
+    reason = "a test may fail loudly anywhere"
+)]
+
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 use std::io::{Read, Write};
 use std::path::Path;

@@ -1,5 +1,7 @@
 //! Whole trials in virtual time: every strategy dresses both arms of the demo's person, and what each brings is what it is for.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail loudly anywhere")]
+
 use std::time::Duration;
 use valet::body::Side;
 use valet::config::{LoadedProfile, Places, Settings};

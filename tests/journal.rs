@@ -1,6 +1,8 @@
 //! The journal of a whole simulated trial: it replays to the same decisions, survives cuts and corruption, and is a bag
 //! that rosbag's own tools accept.
 
+#![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may fail loudly anywhere")]
+
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;

@@ -2,6 +2,8 @@
 //!
 //! The process that is killed is this test itself, begun again: it records samples at the full rate of a robot.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail loudly anywhere")]
+
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};

@@ -1,5 +1,7 @@
 //! Requirement S-38: no bytes, whatever they are, bring down a decoder or a file reader.
 
+#![allow(clippy::indexing_slicing, reason = "a test may fail loudly anywhere")]
+
 use proptest::prelude::*;
 use std::io::Write;
 use std::path::Path;

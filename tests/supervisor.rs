@@ -1,6 +1,14 @@
 //! The supervisor with the simulated robot and person in virtual time: the invariants of the house, each by its name, and
 //! what the operator's acts come to. No screen, no socket, no clock.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a test may fail loudly anywhere"
+)]
+
 use std::time::Duration;
 use valet::body::Side;
 use valet::command::Command;
@@ -199,7 +207,7 @@ fn a_master_that_is_lost_holds_the_trial_until_the_operator_continues() {
 #[test]
 fn a_setpoint_that_a_guard_refused_holds_the_trial_with_the_guards_words() {
     let mut bench = Bench::moving();
-    bench.trial.feed(Input::SetpointRefused { side: Side::Left, reason: "elbow beyond its limit".into() });
+    bench.trial.feed(&Input::SetpointRefused { side: Side::Left, reason: "elbow beyond its limit".into() });
     bench.pass(1.0);
     assert_eq!(bench.phase(), TrialPhase::Holding);
     let cause = bench.trial.snapshot().trial.hold_cause;

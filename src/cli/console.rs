@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// The operator console on a ROS graph.
 ///
-/// The private parameters ~profile, ~strategy, ~seed, ~record and ~dry_run stand in for options that are not typed.
+/// The private parameters ~profile, ~strategy, ~seed, ~record and ~`dry_run` stand in for options that are not typed.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct Arguments {
     /// The person: a name or a file.

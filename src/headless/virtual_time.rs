@@ -88,17 +88,17 @@ impl VirtualTrial {
         if command == Command::Start && self.started.is_none() {
             self.started = Some(self.now());
         }
-        self.step(Input::Operator { command, origin: Origin::Headless }, observe)
+        self.step(&Input::Operator { command, origin: Origin::Headless }, observe)
     }
 
     /// Something that did not come from the simulated world: news of the link, or a guard's refusal.
-    pub fn feed(&mut self, input: Input) -> Vec<Effect> {
+    pub fn feed(&mut self, input: &Input) -> Vec<Effect> {
         self.step(input, &mut |_, _, _| ())
     }
 
     /// News of the link to the robot.
     pub fn tell(&mut self, event: LinkEvent) -> Vec<Effect> {
-        self.feed(Input::Link(event))
+        self.feed(&Input::Link(event))
     }
 
     /// One beat: the world moves on, its messages come in, time passes. Returns the effects, setpoints included.
@@ -107,16 +107,16 @@ impl VirtualTrial {
         let now = self.now();
         let mut effects = Vec::new();
         for input in self.world.step(now).into_inputs() {
-            effects.extend(self.step(input, observe));
+            effects.extend(self.step(&input, observe));
         }
-        effects.extend(self.step(Input::Tick, observe));
+        effects.extend(self.step(&Input::Tick, observe));
         effects
     }
 
-    fn step(&mut self, input: Input, observe: &mut impl FnMut(Stamp, &Input, &[Effect])) -> Vec<Effect> {
+    fn step(&mut self, input: &Input, observe: &mut impl FnMut(Stamp, &Input, &[Effect])) -> Vec<Effect> {
         let now = self.now();
-        let effects = self.supervisor.step(now, &input);
-        observe(now, &input, &effects);
+        let effects = self.supervisor.step(now, input);
+        observe(now, input, &effects);
         for effect in &effects {
             match effect {
                 Effect::Setpoint { side, joints } => self.world.command_joints(*side, joints, now),

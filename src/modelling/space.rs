@@ -25,7 +25,7 @@ impl ArmSpace {
     /// A [`FitError`] where a joint was never seen or a place is not finite.
     pub fn fit(seen: &[Vec<Vector>; 3], settings: &FitSettings, seed: u64) -> Result<Self, FitError> {
         let [hand, elbow, shoulder] = seen;
-        let mixture = |places: &[Vector]| fit(places, settings, seed).map(|fit| fit.mixture);
+        let mixture = |places: &[Vector]| fit(places, settings, seed).map(|fitted| fitted.mixture);
         Ok(Self { hand: mixture(hand)?, elbow: mixture(elbow)?, shoulder: mixture(shoulder)? })
     }
 

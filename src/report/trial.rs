@@ -198,7 +198,7 @@ impl Gathering {
                     ellipses: path.ellipses.to_vec(),
                 });
             }
-            Effect::Waypoint { side, change } => self.waypoints.push((seconds, *side, change.clone())),
+            Effect::Waypoint { side, change } => self.waypoints.push((seconds, *side, *change)),
             Effect::Stopped { cause, .. } => self.stops.push((seconds, format!("emergency stop: {cause}"))),
             Effect::Log { level: Level::Warning | Level::Error, text } => self.stops.push((seconds, text.clone())),
             Effect::TrialEnded { outcome, reason } => self.end = Some((*outcome, reason.clone())),

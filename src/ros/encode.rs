@@ -11,7 +11,7 @@ use crate::assembly::RobotState;
 use crate::body::{BodyPose, Joint, Side};
 use crate::geometry::{Point, Pose};
 use crate::kinematics::JointVector;
-use crate::snapshot::{SideView, Snapshot};
+use crate::snapshot::{ForceSample, SideView, Snapshot};
 use crate::supervisor::{EndpointSample, JointSample};
 use crate::time::Stamp;
 
@@ -114,7 +114,7 @@ pub(super) fn force(snapshot: &Snapshot, side: Side, view: &SideView) -> valet_m
         arm: side.name().to_owned(),
         window: sample.and_then(|sample| sample.change).unwrap_or([f64::NAN; 3]),
         combined: sample.and_then(|sample| sample.statistic).unwrap_or(f64::NAN),
-        magnitude: sample.map_or(f64::NAN, |sample| sample.magnitude()),
+        magnitude: sample.map_or(f64::NAN, ForceSample::magnitude),
         threshold: view.force.window.threshold,
         energy: iteration.map_or(0.0, |iteration| iteration.energy),
         iteration: iteration.map_or(0, |iteration| iteration.number),

@@ -454,7 +454,7 @@ impl Trial {
     pub fn first_arm_stages(&self) -> Vec<PerSide<Point>> {
         let first = self.settings.first_arm;
         let waiting = self.waiting_places();
-        let mut stages = vec![waiting.map(|side, place| stand_back(side, place)), waiting];
+        let mut stages = vec![waiting.map(stand_back), waiting];
         for leading in self.strategy(first).path() {
             let trailing = self.trailing_goal(leading).unwrap_or(*leading);
             stages.push(PerSide::from_fn(|side| if side == first { *leading } else { trailing }));
@@ -508,8 +508,8 @@ fn share_within(offset: &Vector, way: &Vector, reach: f64) -> f64 {
         return 0.0;
     }
     let along = offset.dot(way);
-    let root = (along * along + length_squared * room).sqrt();
-    ((root - along) / length_squared).clamp(0.0, 1.0)
+    let discriminant = (along * along + length_squared * room).sqrt();
+    ((discriminant - along) / length_squared).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]

@@ -72,6 +72,7 @@ impl<T> History<T> {
     }
 
     /// All values, oldest first; to be walked from the newest with `rev`.
+    #[must_use]
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> {
         self.sealed.iter().flat_map(|chunk| chunk.iter()).chain(self.tail.iter())
     }

@@ -6,8 +6,8 @@
 use super::{Mode, Supervisor};
 use crate::body::{Joint, PerSide, Side};
 use crate::geometry::{Point, polyline_length};
-use crate::modelling::ArmSpace;
 use crate::modelling::stick::{Space, StickFit};
+use crate::modelling::{ArmSpace, Mixture};
 use crate::planning::Reach;
 use crate::sequencing::{Stage, Trial};
 use crate::snapshot::{EllipseView, Shared, StrategyRow, StrategyView};
@@ -156,7 +156,7 @@ impl Supervisor {
 
 fn ellipses(space: &ArmSpace) -> Vec<EllipseView> {
     let of_joint = |joint: Joint| {
-        let components = space.joint(joint).map(|mixture| mixture.components()).unwrap_or_default();
+        let components = space.joint(joint).map(Mixture::components).unwrap_or_default();
         components.iter().map(move |component| EllipseView {
             joint,
             weight: component.weight(),

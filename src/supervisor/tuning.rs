@@ -101,7 +101,7 @@ impl Supervisor {
                 self.setup.settings.window.threshold_newtons = value;
             }
             "strategies.learning.optimiser.learning_rate" => {
-                self.setup.settings.strategies.learning.optimiser.learning_rate = value
+                self.setup.settings.strategies.learning.optimiser.learning_rate = value;
             }
             WARM_START => self.setup.settings.warm_start = value >= 0.5,
             _ => self.setup.settings.motion.speed = value,

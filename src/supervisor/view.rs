@@ -293,7 +293,7 @@ impl Supervisor {
             view.trial.phase = TrialPhase::Waiting;
         }
         view.trial.waiting_for = waiting_for(self.mode == Mode::Running, trial);
-        view.trial.next = self.notice(trial);
+        view.trial.next = Self::notice(trial);
         let shown = view.sides.get_mut(arm);
         shown.path.travelled = Shared::new(trial.travelled().to_vec());
         shown.path.updated = Shared::new(trial.strategy(arm).path().to_vec());
@@ -302,7 +302,7 @@ impl Supervisor {
         }
     }
 
-    fn notice(&self, trial: &Trial) -> Option<MotionNotice> {
+    fn notice(trial: &Trial) -> Option<MotionNotice> {
         let Order::Move { targets, .. } = trial.order() else { return None };
         let arms = Self::arms_about_to_move(&targets);
         let what = match trial.stage() {

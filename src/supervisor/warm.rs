@@ -66,18 +66,15 @@ impl Supervisor {
             self.log(now, Level::Information, "strategy", text);
             return;
         }
-        match offered.carried_to(joints) {
-            Some(path) => {
-                // What a fresh strategy has learned is nothing: nothing is dropped.
-                let _ = strategy.adopt(&path);
-                let text = format!("{side} arm: begins with {told}, carried over to where the arm is now");
-                self.log(now, Level::Information, "strategy", text);
-            }
-            None => {
-                let text = format!("{side} arm: {told} cannot be carried over: the arm's joints coincide");
-                self.log(now, Level::Warning, "strategy", text);
-            }
-        }
+        let Some(path) = offered.carried_to(joints) else {
+            let text = format!("{side} arm: {told} cannot be carried over: the arm's joints coincide");
+            self.log(now, Level::Warning, "strategy", text);
+            return;
+        };
+        // What a fresh strategy has learned is nothing: nothing is dropped.
+        let _ = strategy.adopt(&path);
+        let text = format!("{side} arm: begins with {told}, carried over to where the arm is now");
+        self.log(now, Level::Information, "strategy", text);
     }
 
     /// Tells what was learned for an arm that is dressed, for the next trial to begin with.

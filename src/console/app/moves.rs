@@ -45,7 +45,7 @@ impl App {
             Action::Suspend => return self.suspend(snapshot),
             Action::Quit => return self.quit(snapshot),
             Action::LogLevel | Action::LogSolo | Action::LogMute | Action::LogInvert => {
-                self.filter_log(action, snapshot)
+                self.filter_log(action, snapshot);
             }
             other => self.scroll(other, snapshot),
         }

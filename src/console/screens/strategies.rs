@@ -20,7 +20,7 @@ pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffe
         return;
     }
     let first = scene.view.row.min(strategies.len().saturating_sub(SHOWN));
-    let tall = strategies.iter().skip(first).take(SHOWN).map(|strategy| height(strategy)).max().unwrap_or(0);
+    let tall = strategies.iter().skip(first).take(SHOWN).map(height).max().unwrap_or(0);
     let [above, below] = Layout::vertical([Constraint::Length(tall), Constraint::Fill(1)]).areas(area);
     front::draw(scene, strategies, below, buffer);
     let columns: [Rect; SHOWN] = Layout::horizontal([Constraint::Fill(1); SHOWN]).spacing(1).areas(above);

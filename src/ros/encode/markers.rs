@@ -25,7 +25,7 @@ const HEAVIEST: f32 = 0.4;
 pub(in crate::ros) fn all(snapshot: &Snapshot) -> MarkerArray {
     let mut markers = Vec::new();
     for (side, view) in snapshot.sides.iter() {
-        let number = if side == Side::Left { 0 } else { 1 };
+        let number = i32::from(side != Side::Left);
         let lines: [(&str, Vec<Point>, [f32; 3]); 4] = [
             ("planned", view.path.planned.to_vec(), [0.5, 0.5, 0.5]),
             ("updated", view.path.updated.to_vec(), [0.1, 0.6, 1.0]),
@@ -149,7 +149,7 @@ mod tests {
     fn an_ellipsoid_has_the_width_of_four_deviations_along_its_own_axes() {
         // A long axis of 0.1 m deviation along x + y, 0.02 m across and upwards.
         let (long, short) = (0.01, 0.0004);
-        let (sum, difference) = ((long + short) / 2.0, (long - short) / 2.0);
+        let (sum, difference) = (f64::midpoint(long, short), (long - short) / 2.0);
         let covariance = [[sum, difference, 0.0], [difference, sum, 0.0], [0.0, 0.0, short]];
         let markers = all(&snapshot(vec![ellipse(covariance)], Vec::new())).markers;
         let [marker] = markers.as_slice() else { panic!("{markers:?}") };

@@ -211,15 +211,12 @@ fn unescape(text: &str) -> String {
     while let Some((before, after)) = rest.split_once('&') {
         out.push_str(before);
         let named = after.split_once(';').and_then(|(name, tail)| character(name).map(|found| (found, tail)));
-        match named {
-            Some((found, tail)) => {
-                out.push(found);
-                rest = tail;
-            }
-            None => {
-                out.push('&');
-                rest = after;
-            }
+        if let Some((found, tail)) = named {
+            out.push(found);
+            rest = tail;
+        } else {
+            out.push('&');
+            rest = after;
         }
     }
     out.push_str(rest);

@@ -1,6 +1,6 @@
 //! What an Xtion makes of true depth: shadow of the projector, coarse disparity, ragged edges, holes and a nearest distance.
 //!
-//! Source of the numbers: OpenNI's driver (baseline about 75 mm, disparity in eighths of a pixel) and published
+//! Source of the numbers: `OpenNI`'s driver (baseline about 75 mm, disparity in eighths of a pixel) and published
 //! measurements of such sensors, whose depth error grows with the square of the distance.
 
 use crate::vision::{DepthImage, Intrinsics};

@@ -8,10 +8,10 @@ use super::{ArmAngles, SimulatedPerson};
 use crate::body::{PerSide, Side};
 use crate::geometry::Vector;
 
-/// How long the person moves, in seconds (ours: each angle swings at least five times).
-const SECONDS: f64 = 30.0;
 /// Poses a second, as a depth camera brings them.
 const RATE_HZ: f64 = 30.0;
+/// How many poses: the person moves for half a minute (ours: each angle swings at least five times).
+const BEATS: u32 = 900;
 /// Half of each swing in degrees: elevation, plane, rotation, elbow (ours: a movement that costs no effort).
 const SWING_DEGREES: [f64; 4] = [8.0, 8.0, 10.0, 10.0];
 /// Swings a second of each angle: their ratios are no fractions of small numbers, so no swing repeats another.
@@ -35,26 +35,26 @@ impl SimulatedPerson {
             let mut random = Random::new(seed, purpose);
             let phases = SWING_DEGREES.map(|_| random.between(0.0, std::f64::consts::TAU));
             let posture = self.arm(side).posture;
-            let mut seen = Seen::default();
-            for beat in 0..(SECONDS * RATE_HZ) as u32 {
+            let mut places_seen = Seen::default();
+            for beat in 0..BEATS {
                 let sway = random.normal_vector(SWAY_METRES);
                 let angles = swung(&posture, &phases, f64::from(beat) / RATE_HZ);
                 let places = angles.points(side, &(self.shoulder(side) + sway), &sizes).dressed();
-                for (list, place) in seen.iter_mut().zip(places) {
+                for (list, place) in places_seen.iter_mut().zip(places) {
                     list.push(place.coords + random.normal_vector(SEEN_METRES));
                 }
             }
-            seen
+            places_seen
         })
     }
 }
 
 /// The posture's angles at a moment of the exercise, kept within what people reach.
 fn swung(posture: &ArmAngles, phases: &[f64; 4], seconds: f64) -> ArmAngles {
-    let [elevation, plane, rotation, elbow] = std::array::from_fn(|angle| {
-        let turn = std::f64::consts::TAU * PACE_HZ[angle] * seconds + phases[angle];
-        SWING_DEGREES[angle] * turn.sin()
-    });
+    let swing = |degrees: f64, pace: f64, phase: f64| degrees * (std::f64::consts::TAU * pace * seconds + phase).sin();
+    let mut swings = SWING_DEGREES.into_iter().zip(PACE_HZ).zip(phases);
+    let [elevation, plane, rotation, elbow] =
+        [(); 4].map(|()| swings.next().map_or(0.0, |((degrees, pace), phase)| swing(degrees, pace, *phase)));
     ArmAngles {
         elevation_degrees: (posture.elevation_degrees + elevation).clamp(0.0, 180.0),
         plane_degrees: (posture.plane_degrees + plane).clamp(-90.0, 135.0),
