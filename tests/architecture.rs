@@ -107,7 +107,6 @@ fn rooms_named(code: &str) -> BTreeSet<String> {
                     letter if letter.is_alphanumeric() || letter == '_' => {
                         if fresh && depth == 0 {
                             word.push(letter);
-                            continue;
                         }
                     }
                     _ => {

@@ -23,9 +23,9 @@ impl ArmSpace {
     ///
     /// # Errors
     /// A [`FitError`] where a joint was never seen or a place is not finite.
-    pub fn fit(seen: &[Vec<Vector>; 3], settings: &FitSettings, seed: u64) -> Result<Self, FitError> {
-        let [hand, elbow, shoulder] = seen;
-        let mixture = |places: &[Vector]| fit(places, settings, seed).map(|fitted| fitted.mixture);
+    pub fn fit(places: &[Vec<Vector>; 3], settings: &FitSettings, seed: u64) -> Result<Self, FitError> {
+        let [hand, elbow, shoulder] = places;
+        let mixture = |joint: &[Vector]| fit(joint, settings, seed).map(|fitted| fitted.mixture);
         Ok(Self { hand: mixture(hand)?, elbow: mixture(elbow)?, shoulder: mixture(shoulder)? })
     }
 
