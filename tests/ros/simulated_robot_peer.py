@@ -1,35 +1,11 @@
 #!/usr/bin/env python3
 """A rospy peer that drives the simulated Baxter: it moves only when enabled, and stops when told."""
-import os
-import subprocess
-import sys
-import tempfile
 import threading
 import unittest
 
+import peer
 
-def make_messages():
-    """Writes the Python classes of baxter_core_msgs from msg/: Debian has no such package."""
-    here = os.path.dirname(os.path.realpath(__file__))
-    messages = os.path.join(here, "..", "..", "msg")
-    folder = tempfile.mkdtemp(prefix="valet_messages_")
-    out = os.path.join(folder, "baxter_core_msgs", "msg")
-    os.makedirs(out)
-    includes = []
-    for package in os.listdir(messages):
-        includes += ["-I%s:%s" % (package, os.path.join(messages, package, "msg"))]
-    # std_msgs/Header is built into rosrust and so not among our definitions.
-    includes += ["-Istd_msgs:/usr/share/std_msgs/msg"]
-    source = os.path.join(messages, "baxter_core_msgs", "msg")
-    files = [os.path.join(source, name) for name in sorted(os.listdir(source))]
-    generator = "/usr/lib/genpy/genmsg_py.py"
-    subprocess.check_call([generator, "-p", "baxter_core_msgs", "-o", out] + includes + files)
-    subprocess.check_call([generator, "--initpy", "-p", "baxter_core_msgs", "-o", out])
-    open(os.path.join(folder, "baxter_core_msgs", "__init__.py"), "w").close()
-    sys.path.insert(0, folder)
-
-
-make_messages()
+peer.make_messages()
 
 import rospy  # noqa: E402
 import rostest  # noqa: E402
