@@ -206,8 +206,9 @@ impl Worker {
                 self.poll_latch();
                 self.report_losses();
                 self.step(&Input::Tick);
-                // After a long pause the missed beats are not made up for: the arms must not hurry.
-                next_tick = (next_tick + TICK).max(now);
+                // After a long pause the missed beats are not made up for: the arms must not hurry, and no two beats come
+                // so close together that what is measured between them is mostly noise.
+                next_tick = (next_tick + TICK).max(now + TICK / 2);
             }
             if now >= next_snapshot {
                 self.supervisor.refresh_comparison();

@@ -218,6 +218,15 @@ impl Supervisor {
         self.show_hold(now, cause);
     }
 
+    /// As [`Self::hold`]; where nothing moves that could be held, the operator is told all the same.
+    fn hold_or_warn(&mut self, now: Stamp, cause: &str) {
+        if self.mode == Mode::Running {
+            self.hold(now, cause);
+        } else {
+            self.log(now, Level::Warning, "link", cause.to_owned());
+        }
+    }
+
     fn see_endpoint(&mut self, now: Stamp, sample: &EndpointSample) {
         let position = sample.pose.translation.vector.into();
         let dressing = self.trial.as_ref().filter(|trial| trial.arm() == sample.side && trial.listens());
@@ -273,7 +282,7 @@ impl Supervisor {
     fn see_link(&mut self, now: Stamp, event: &LinkEvent) {
         match event {
             LinkEvent::MasterLost => {
-                self.hold(now, "the ROS master does not answer: start roscore again, then continue");
+                self.hold_or_warn(now, "the ROS master does not answer: start roscore again, then continue");
             }
             LinkEvent::MasterBack => self.log(now, Level::Information, "link", "the ROS master answers".into()),
             LinkEvent::ForeignPublisher { topic, node } => {

@@ -44,8 +44,9 @@ impl Default for GuardSettings {
     }
 }
 
-/// Shortest time between two commands that a speed is computed with: half a tick.
-const SHORTEST_STEP: f64 = 0.005;
+/// Shortest time between two commands that a speed is computed with. The planner samples by the very moments that come in
+/// here, so a short step is exact; this only keeps from dividing by nothing.
+const SHORTEST_STEP: f64 = 0.0005;
 /// Time between two commands that are on time, in seconds.
 const USUAL_STEP: f64 = 0.01;
 

@@ -44,6 +44,8 @@ pub(crate) struct Drive {
     last: Option<PerSide<Setpoint>>,
     velocity: PerSide<Vector>,
     acceleration: PerSide<Vector>,
+    /// Seconds over which the velocity was measured.
+    measured_seconds: f64,
 }
 
 impl Drive {
@@ -58,6 +60,7 @@ impl Drive {
             last: None,
             velocity: still,
             acceleration: still,
+            measured_seconds: 0.0,
         }
     }
 
@@ -129,9 +132,12 @@ impl Drive {
         for side in Side::BOTH {
             let moved = next.get(side).pose.translation.vector - last.get(side).pose.translation.vector;
             let velocity = moved / seconds;
-            *self.acceleration.get_mut(side) = (velocity - self.velocity.get(side)) / seconds;
+            // Each velocity holds for the middle of its own span; beats are not always equally far apart.
+            let between = 0.5 * (seconds + if self.measured_seconds > 0.0 { self.measured_seconds } else { seconds });
+            *self.acceleration.get_mut(side) = (velocity - self.velocity.get(side)) / between;
             *self.velocity.get_mut(side) = velocity;
         }
+        self.measured_seconds = seconds;
     }
 
     /// Lets `span` pass and says what came of it.

@@ -54,8 +54,9 @@ class Master:
         raise AssertionError("no roscore")
 
     def kill(self):
-        os.killpg(self.process.pid, signal.SIGINT)
-        self.process.wait(30)
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGINT)
+            self.process.wait(30)
 
 
 class Restarts(unittest.TestCase):
@@ -87,13 +88,14 @@ class Restarts(unittest.TestCase):
         self.node.until_accepted("continue", "continue")
         self.moves()
 
+    def says_why(self, since):
+        """The node names the silence, also to an operator who wants to go on."""
+        self.node.type("continue")
+        self.node.await_line("ms old", "disabled", "emergency stop", "refused", since=since)
+
     def moves(self):
         said = tool("rostopic", "echo", "-n", "1", "/robot/limb/left/joint_command", seconds=30)
         self.assertIn("left_s0", said)
-
-    def hold(self):
-        """A hold that is in force already, as under load, is as good as a new one."""
-        self.node.type("hold")
 
     def test_1_the_tools_of_ros_work_on_both(self):
         topics = tool("rostopic", "list")
@@ -104,12 +106,12 @@ class Restarts(unittest.TestCase):
             self.assertIn(node, nodes)
             self.assertIn("xmlrpc reply", tool("rosnode", "ping", "-c", "2", node))
         self.assertIn("average rate", tool("rostopic", "hz", "-w", "50", "/robot/joint_states", seconds=6))
-        self.assertIn("average rate", tool("rostopic", "hz", "-w", "10", "/valet/state", seconds=6))
+        self.assertIn("Publishers", tool("rostopic", "info", "/valet/state"))
         self.assertIn("enabled: True", tool("rostopic", "echo", "-n", "1", "--noarr", "/robot/state"))
         self.assertIn("16UC1", tool("rostopic", "echo", "-n", "1", "--noarr", "/camera/depth/image_raw"))
         since = self.node.mark()
         self.assertIn("success: True", tool("rosservice", "call", "/valet/hold"))
-        self.node.await_line("hold", since=since)
+        self.node.await_line("command: hold", since=since)
         self.goes_on()
 
     def test_2_a_master_that_dies_holds_and_the_trial_goes_on_when_it_is_back(self):
@@ -130,7 +132,7 @@ class Restarts(unittest.TestCase):
     def test_3_a_simulator_that_dies_holds_and_the_trial_goes_on_with_the_next_one(self):
         since = self.node.mark()
         self.simulator.process.kill()
-        self.node.await_line("warning: hold: ", "emergency stop", since=since)
+        self.says_why(since)
         type(self).simulator = self.start_simulator()
         # A robot that was switched off comes back disabled.
         self.node.until_accepted("enable", "enable the robot")

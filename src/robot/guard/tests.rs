@@ -130,6 +130,17 @@ fn after_a_late_beat_a_motion_that_goes_on_as_planned_passes() {
 }
 
 #[test]
+fn a_beat_that_comes_early_after_a_late_one_passes() {
+    let (mut limb, now, mut joints) = moving_then_late(15, 2);
+    limb.command(at(now), &joints).unwrap();
+    for _ in 0..3 {
+        let early = limb.sent.unwrap().stamp + Duration::from_millis(2);
+        joints[2] += 0.3 * 0.002;
+        limb.command(early, &joints).unwrap();
+    }
+}
+
+#[test]
 fn a_late_beat_excuses_no_jump_and_no_sudden_stop_that_follows() {
     let (mut limb, now, mut joints) = moving_then_late(30, 30);
     assert_eq!(refused(&mut limb, at(now), &joints).what, Limit::JointSpeed { joint: "right_e0".into() });
