@@ -390,6 +390,7 @@ fn late(name: &str, stream: &Freshness, now: Stamp) -> Verdict {
     let cause = match (stream.last(), stream.age(now)) {
         (None, _) => format!("{name}: nothing has come in yet"),
         (_, None) => format!("{name}: the clock went back"),
+        _ if stream.is_ahead() => format!("{name}: its time stamps jumped ahead: check the robot's time service"),
         (_, Some(age)) => {
             let age = age.as_secs_f64() + stream.delay();
             format!("{name}: {:.0} ms old, more than {deadline} ms", age * 1000.0)

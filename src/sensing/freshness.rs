@@ -12,6 +12,10 @@ use std::time::Duration;
 const REMEMBERED: usize = 256;
 /// The span over which rate, gap and jitter are taken.
 const SPAN: Duration = Duration::from_secs(1);
+/// Stamps that are this much further ahead than any before jumped, in seconds: no way through a network gains so much.
+const JUMP_SECONDS: f64 = 0.5;
+/// Stamps that stay ahead for so long come from a clock that was set; a shorter jump must not make all later stamps look old.
+const SET_AFTER: Duration = Duration::from_secs(5);
 
 /// What is expected of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,6 +57,7 @@ pub struct Freshness {
     arrivals: VecDeque<Stamp>,
     lag: Option<f64>,
     least_lag: Option<f64>,
+    ahead_since: Option<Stamp>,
     reordered: u64,
     newest_header: Option<Stamp>,
 }
@@ -62,7 +67,7 @@ impl Freshness {
     #[must_use]
     pub fn new(settings: FreshnessSettings) -> Self {
         let arrivals = VecDeque::with_capacity(REMEMBERED);
-        Self { settings, arrivals, lag: None, least_lag: None, reordered: 0, newest_header: None }
+        Self { settings, arrivals, lag: None, least_lag: None, ahead_since: None, reordered: 0, newest_header: None }
     }
 
     /// What is expected of it.
@@ -89,7 +94,24 @@ impl Freshness {
         self.newest_header = self.newest_header.max(Some(header));
         let lag = arrival.seconds() - header.seconds();
         self.lag = Some(lag);
+        self.take_lag(arrival, lag);
+    }
+
+    fn take_lag(&mut self, arrival: Stamp, lag: f64) {
+        let is_ahead = self.least_lag.is_some_and(|least| least - lag > JUMP_SECONDS);
+        let since = *self.ahead_since.get_or_insert(arrival);
+        let is_set = arrival.checked_since(since).is_none_or(|span| span > SET_AFTER);
+        if is_ahead && !is_set {
+            return;
+        }
+        self.ahead_since = None;
         self.least_lag = Some(self.least_lag.map_or(lag, |least| least.min(lag)));
+    }
+
+    /// True while the stamps are further ahead than they can be: their clock jumped, or they are wrong.
+    #[must_use]
+    pub const fn is_ahead(&self) -> bool {
+        self.ahead_since.is_some()
     }
 
     /// When the newest message arrived.
@@ -111,10 +133,13 @@ impl Freshness {
         self.lag.zip(self.least_lag).map_or(0.0, |(lag, least)| (lag - least).max(0.0))
     }
 
-    /// Whether the newest value still holds: its age and the delay of its way together are less than the deadline.
+    /// Whether the newest value still holds: its age and the delay of its way together are less than the deadline, and its
+    /// stamp has not jumped ahead.
     #[must_use]
     pub fn is_fresh(&self, now: Stamp) -> bool {
-        self.age(now).is_some_and(|age| age.as_secs_f64() + self.delay() <= self.settings.deadline.as_secs_f64())
+        let age = self.age(now);
+        !self.is_ahead()
+            && age.is_some_and(|age| age.as_secs_f64() + self.delay() <= self.settings.deadline.as_secs_f64())
     }
 
     fn recent(&self, now: Stamp) -> impl Iterator<Item = Stamp> + '_ {

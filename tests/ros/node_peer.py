@@ -209,7 +209,7 @@ class NodeUnderTest(unittest.TestCase):
 
     def test_4_stamps_that_jump_hold(self):
         self.addCleanup(setattr, self.robot, "shift", 0.0)
-        for jump, words in ((-3.0, ("ms old", "went back")), (3.0, ("ahead",))):
+        for jump, words in ((-3.0, ("ms old", "went back")), (3.0, ("jumped ahead",))):
             self.robot.shift = jump
             self.holds_and_says(*words)
             self.robot.shift = 0.0

@@ -110,3 +110,20 @@ proptest! {
         prop_assert!(stream.rate(milliseconds(last + wait)).is_finite());
     }
 }
+
+#[test]
+fn stamps_that_jump_ahead_are_not_fresh_and_what_follows_is_not_old() {
+    let mut stream = Freshness::new(FreshnessSettings::new(80.0, 120.0, Duration::from_millis(60)));
+    let at = |milliseconds: u64| Stamp::from_nanoseconds(milliseconds * 1_000_000);
+    let mut see = |from: u64, ahead: u64| {
+        (from..from + 1000).step_by(10).for_each(|now| stream.observe(at(now), Some(at(now + ahead))));
+        stream.is_fresh(at(from + 1000))
+    };
+    assert!(see(1000, 0));
+    assert!(!see(2000, 3000), "three seconds ahead");
+    assert!(see(3000, 0), "as before");
+    for second in 4..9 {
+        assert!(!see(second * 1000, 3000));
+    }
+    assert!(see(9000, 3000) && see(10_000, 3000), "a clock that was set");
+}
