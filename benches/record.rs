@@ -22,10 +22,10 @@ use valet::snapshot::Watermark;
 use valet::supervisor::Setup;
 use valet::vision::Intrinsics;
 
-/// A setup as `valet demo` makes it, and its simulated world.
+/// A setup as `valet demo` makes it in the folder of this package, and its simulated world.
 fn demo() -> (Setup, WorldSetup) {
     let places = Places::of_this_machine();
-    let person = LoadedProfile::find("participant-01", &places).expect("it is built in");
+    let person = LoadedProfile::find("participant-01", &places).expect("the package has profiles");
     let setup = Settings::default().setup_for(&person, 3, Watermark::Demo).expect("a built-in profile is usable");
     let simulated = person.profile.simulated.clone().unwrap_or_default();
     (setup, WorldSetup { seed: 3, person: simulated, ..WorldSetup::default() })
@@ -37,7 +37,7 @@ fn journal(folder: &Path) -> (std::path::PathBuf, Header, f64) {
     let header = Header::of(&setup, "", 0).expect("a setup can be written");
     let mut writer = JournalWriter::create(folder, &header).expect("a temporary folder can be written to");
     let mut trial = VirtualTrial::new(setup, &world).expect("a built-in profile is usable");
-    trial.run(&mut ScriptedOperator::new(10), Duration::from_secs(120), |now, input, effects| {
+    trial.run(&mut ScriptedOperator::new(10), Duration::from_mins(2), |now, input, effects| {
         writer.step(now, input, effects, 0).expect("the disk has room");
     });
     let seconds = trial.trial_seconds();

@@ -14,6 +14,7 @@ pub(super) struct Arguments {
     print_default: bool,
     /// Check a file of settings (the one that would be used, where none is named) and the profile that it names.
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    #[expect(clippy::option_option, reason = "an option that may stand without its value, as clap tells it")]
     check: Option<Option<PathBuf>>,
 }
 

@@ -6,7 +6,7 @@ use super::writer::JournalWriter;
 use crate::config::RecordingSettings;
 use crate::supervisor::{Effect, Input};
 use crate::time::Stamp;
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -48,6 +48,7 @@ pub enum RecorderNotice {
 /// Where the recorder's notices go. Called from its own thread; must not block.
 pub type Told = Box<dyn Fn(RecorderNotice) + Send>;
 
+#[expect(clippy::large_enum_variant, reason = "nearly all items are steps")]
 enum Item {
     Step { now: Stamp, input: Input, effects: Vec<Effect>, lost_before: u64 },
     Depth { stamp: Stamp, width: u32, height: u32, millimetres: Arc<[u16]> },
@@ -133,10 +134,7 @@ impl Recorder {
     }
 
     fn send(&self, item: Item) -> bool {
-        match self.queue.as_ref().map(|queue| queue.try_send(item)) {
-            Some(Ok(())) => true,
-            Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) | None => false,
-        }
+        self.queue.as_ref().is_some_and(|queue| queue.try_send(item).is_ok())
     }
 
     /// How the recorder does now.

@@ -82,9 +82,13 @@ pub(super) fn of_effect(now: Stamp, effect: &Effect) -> Option<RosMessage> {
         Effect::Setpoint { side, joints } => {
             let mut encoder = Encoder::default();
             encoder.word(1).length(joints.len());
-            joints.iter().for_each(|value| _ = encoder.number(*value));
+            for value in joints.iter() {
+                encoder.number(*value);
+            }
             encoder.length(joints.len());
-            JOINT_NAMES.iter().for_each(|joint| _ = encoder.text(&format!("{side}_{joint}")));
+            for joint in JOINT_NAMES {
+                encoder.text(&format!("{side}_{joint}"));
+            }
             Some(RosMessage { channel: of_side(COMMANDS, *side), bytes: encoder.0 })
         }
         Effect::Log { level, text } => {
@@ -134,9 +138,13 @@ fn joints(sample: &JointSample) -> RosMessage {
         .collect();
     let mut encoder = Encoder::default();
     encoder.header(sample.stamp, "").length(known.len());
-    known.iter().for_each(|(name, _)| _ = encoder.text(name));
+    for (name, _) in &known {
+        encoder.text(name);
+    }
     encoder.length(known.len());
-    known.iter().for_each(|(_, position)| _ = encoder.number(*position));
+    for (_, position) in &known {
+        encoder.number(*position);
+    }
     encoder.length(0).length(0);
     RosMessage { channel: JOINTS, bytes: encoder.0 }
 }

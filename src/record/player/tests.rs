@@ -46,7 +46,7 @@ fn it_goes_on_with_time_at_its_pace_and_stands_still_at_the_end() {
     player.pass(Duration::from_secs(1));
     assert!((seen(&mut player).position - 6.0).abs() < 1e-9);
     assert_eq!(notes(&player), 6);
-    player.pass(Duration::from_secs(60));
+    player.pass(Duration::from_mins(1));
     let view = seen(&mut player);
     assert!((view.position - view.length).abs() < 1e-9 && view.paused && (view.length - 10.0).abs() < 1e-9);
     assert_eq!((notes(&player), player.differing()), (10, 0));

@@ -13,13 +13,14 @@ const COLUMNS: usize = 700;
 pub(super) fn force(trial: &TrialRecord, side: Side) -> Figure {
     let time = |stamp: crate::time::Stamp| stamp.since(trial.began).as_secs_f64();
     let samples = trial.forces.get(side);
-    let magnitude = samples.iter().map(|sample| [time(sample.stamp), sample.magnitude()]).collect();
-    let statistic = samples.iter().map(|sample| [time(sample.stamp), sample.statistic.unwrap_or(f64::NAN)]).collect();
+    let magnitude: Vec<_> = samples.iter().map(|sample| [time(sample.stamp), sample.magnitude()]).collect();
+    let statistic: Vec<_> =
+        samples.iter().map(|sample| [time(sample.stamp), sample.statistic.unwrap_or(f64::NAN)]).collect();
     let found = trial.detections.get(side).iter().map(|found| [time(found.stamp), found.magnitude]);
     let threshold = *trial.thresholds.get(side);
     let mut plot = Plot::new(format!("{side} arm"), Axis::new("time (s)"), Axis::new("force (N)").including(0.0))
-        .with(Layer::line("force", enveloped(magnitude)).coloured(Colour::SkyBlue).wide(1.2))
-        .with(Layer::line("window statistic", enveloped(statistic)).coloured(Colour::Blue).wide(1.2))
+        .with(Layer::line("force", enveloped(&magnitude)).coloured(Colour::SkyBlue).wide(1.2))
+        .with(Layer::line("window statistic", enveloped(&statistic)).coloured(Colour::Blue).wide(1.2))
         .with(Layer::scatter("resistance", found).marked(Marker::Star).coloured(Colour::Vermillion));
     if threshold > 0.0 {
         plot = plot.with(Layer::across(format!("threshold {threshold:.1} N"), threshold).coloured(Colour::Vermillion));
@@ -31,7 +32,7 @@ pub(super) fn force(trial: &TrialRecord, side: Side) -> Figure {
 }
 
 /// The lowest and highest point of each column, so that a spike of one sample is still drawn; gaps stay gaps.
-fn enveloped(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+fn enveloped(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let size = points.len().div_ceil(COLUMNS).max(1);
     let mut line: Vec<[f64; 2]> = Vec::new();
     for column in points.chunks(size) {
