@@ -6,6 +6,7 @@
 mod chain;
 mod check;
 mod collision;
+mod cone;
 mod damped;
 mod description;
 mod difference;
@@ -24,6 +25,7 @@ mod timing;
 
 pub use chain::JOINTS;
 pub use collision::Proximity;
+pub use cone::OrientationTolerance;
 pub use description::JOINT_SUFFIXES;
 pub use difference::Difference;
 pub use inverse::{InverseError, TOLERANCE};

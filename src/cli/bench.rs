@@ -2,6 +2,7 @@
 
 mod console;
 mod ik;
+mod motion;
 mod pose;
 
 use super::exit::Failure;
@@ -17,6 +18,7 @@ pub(super) struct Arguments {
 enum Bench {
     Console(console::Arguments),
     Ik(ik::Arguments),
+    Motion(motion::Arguments),
     Pose(pose::Arguments),
 }
 
@@ -24,6 +26,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.bench {
         Bench::Console(arguments) => console::run(arguments),
         Bench::Ik(arguments) => ik::run(arguments),
+        Bench::Motion(arguments) => motion::run(arguments),
         Bench::Pose(arguments) => pose::run(arguments),
     }
 }

@@ -7,6 +7,7 @@
 
 use super::JointVector;
 use super::chain::Frame;
+use super::cone::OrientationTolerance;
 use super::damped::{damped_step, projected_step};
 use super::model::ArmModel;
 use super::seeds::{Candidates, TABLE_SIZE};
@@ -53,6 +54,28 @@ pub enum InverseError {
     },
 }
 
+/// Nearer than this (metres, radians) a seed is that of a path: a tick at the highest speeds moves a gripper by 0.006 m.
+const NEAR: f64 = 0.02;
+
+fn is_near(from: &Pose, to: &Pose) -> bool {
+    (from.translation.vector - to.translation.vector).norm() < NEAR && from.rotation.angle_to(&to.rotation) < NEAR
+}
+
+/// What an attempt has to reach.
+struct Aim {
+    target: Frame,
+    tolerance: OrientationTolerance,
+    /// Largest component of the twist that may remain, metres and radians.
+    remaining: f64,
+}
+
+impl Aim {
+    /// A pose of a path.
+    fn path(target: &Pose) -> Self {
+        Self { target: Frame::from_pose(target), tolerance: OrientationTolerance::NONE, remaining: PATH_TOLERANCE }
+    }
+}
+
 /// One attempt's end.
 enum Attempt {
     Reached(JointVector),
@@ -68,15 +91,34 @@ impl ArmModel {
     /// [`InverseError::NotFinite`] for a target or seed that is no number, [`InverseError::NotReached`] with the nearest
     /// posture found.
     pub fn inverse(&self, target: &Pose, seed: &JointVector) -> Result<JointVector, InverseError> {
-        if !target.is_finite() || !seed.iter().all(|value| value.is_finite()) {
+        self.inverse_within(target, &OrientationTolerance::NONE, seed)
+    }
+
+    /// [`ArmModel::inverse`] where the orientation need only lie inside a tolerance. The place is kept exactly.
+    ///
+    /// # Errors
+    /// As [`ArmModel::inverse`]; a tolerance that is no angle from 0 to π counts as a number that is not finite.
+    pub fn inverse_within(
+        &self,
+        target: &Pose,
+        tolerance: &OrientationTolerance,
+        seed: &JointVector,
+    ) -> Result<JointVector, InverseError> {
+        if !target.is_finite() || !seed.iter().all(|value| value.is_finite()) || !tolerance.is_usable() {
             return Err(InverseError::NotFinite);
         }
-        let frame = Frame::from_pose(target);
+        let aim = Aim { target: Frame::from_pose(target), tolerance: *tolerance, remaining: TOLERANCE };
         let seed = seed.zip_zip_map(&self.limits.lower, &self.limits.upper, f64::clamp);
+        // On a path the seed is next to its target: no other posture need be looked for.
+        if is_near(&self.forward(&seed), target)
+            && let Attempt::Reached(joints) = self.attempt(&aim, seed, STEPS)
+        {
+            return Ok(joints);
+        }
         let mut nearest = Nearest::default();
         for (steps, attempts) in [(STEPS, TABLE_SIZE + 1), (PATIENT_STEPS, PATIENT_ATTEMPTS)] {
             for joints in Candidates::new(self, target, seed).take(attempts) {
-                match self.attempt(&frame, joints, TOLERANCE, steps) {
+                match self.attempt(&aim, joints, steps) {
                     Attempt::Reached(joints) => return Ok(joints),
                     Attempt::Stalled(found) => {
                         nearest.offer(found.joints, &found.error);
@@ -87,16 +129,20 @@ impl ArmModel {
         Err(nearest.into_error())
     }
 
-    /// Up to `count` clearly different joint positions for a pose, from many seeds: the choice that look-ahead starts with.
-    pub(super) fn solutions(&self, target: &Pose, count: usize) -> Result<Vec<JointVector>, InverseError> {
+    /// Up to `count` clearly different joint positions (radians) for a pose in `base`, from many seeds: the choice that
+    /// look-ahead starts with.
+    ///
+    /// # Errors
+    /// As [`ArmModel::inverse`].
+    pub fn solutions(&self, target: &Pose, count: usize) -> Result<Vec<JointVector>, InverseError> {
         let first = self.inverse(target, &self.limits.middle())?;
         let mut found = vec![self.follow(target, &first).unwrap_or(first)];
-        let frame = Frame::from_pose(target);
+        let aim = Aim::path(target);
         for seed in Candidates::new(self, target, first) {
             if found.len() >= count {
                 break;
             }
-            if let Attempt::Reached(joints) = self.attempt(&frame, seed, PATH_TOLERANCE, STEPS)
+            if let Attempt::Reached(joints) = self.attempt(&aim, seed, STEPS)
                 && found.iter().all(|other| (joints - other).amax() > DIFFERENT)
             {
                 found.push(joints);
@@ -114,20 +160,20 @@ impl ArmModel {
 
     /// One attempt from a seed that is already close: the inner step of path tracking.
     pub(super) fn follow(&self, target: &Pose, seed: &JointVector) -> Option<JointVector> {
-        match self.attempt(&Frame::from_pose(target), *seed, PATH_TOLERANCE, STEPS) {
+        match self.attempt(&Aim::path(target), *seed, STEPS) {
             Attempt::Reached(joints) => Some(joints),
             Attempt::Stalled(_) => None,
         }
     }
 
-    fn attempt(&self, target: &Frame, mut joints: JointVector, tolerance: f64, steps: usize) -> Attempt {
+    fn attempt(&self, aim: &Aim, mut joints: JointVector, steps: usize) -> Attempt {
         let mut best = Nearest::default();
         let mut damping = 1.0_f64;
         let mut stalls = 0;
         for _ in 0..=steps {
             let frames = self.chain.frames(&joints);
-            let error = twist_between(&frames.tip, target);
-            if error.amax() <= tolerance {
+            let error = aim.tolerance.twist_between(&frames.tip, &aim.target);
+            if error.amax() <= aim.remaining {
                 return Attempt::Reached(joints);
             }
             let size = error.norm_squared();
@@ -188,7 +234,7 @@ pub(super) fn twist_between(from: &Frame, to: &Frame) -> Vector6<f64> {
 }
 
 /// The rotation vector of a rotation matrix, stable for small turns and near a half turn.
-fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
+pub(super) fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let twice_sine =
         Vector3::new(rotation.m32 - rotation.m23, rotation.m13 - rotation.m31, rotation.m21 - rotation.m12);
     let sine = 0.5 * twice_sine.norm();

@@ -4,8 +4,10 @@
 //! going to and fro does not wind the arm up against its limits. Knows no time and no second arm.
 
 use super::JointVector;
-use super::inverse::TOLERANCE;
+use super::chain::Frame;
+use super::inverse::{TOLERANCE, twist_between};
 use super::model::ArmModel;
+use super::path::JointPath;
 use super::refusal::MotionRefusal;
 use crate::geometry::{Point, Pose};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
@@ -18,8 +20,13 @@ pub(super) const KNOT_ANGLE: f64 = 0.02;
 pub(super) const MOST_KNOTS: f64 = 1500.0;
 /// A joint that moves further than this (radians) from knot to knot jumps to another posture.
 const JUMP: f64 = 0.1;
-/// How far the left-over freedom goes towards the middle of the joint ranges from knot to knot, as a share.
+/// How far the left-over freedom goes towards the middle of the joint ranges on [`KNOT_SPACING`], as a share.
 const CENTRING: f64 = 0.004;
+/// How far the spline may leave the line halfway between knots, in metres and radians: half of what is promised of a line.
+const DEVIATION: f64 = 5e-6;
+/// How often the knots of a line are doubled before it is taken as it is. Where a joint meets the end of its range the way has a
+/// corner, which a spline cuts by less the nearer its knots are.
+pub(super) const DOUBLINGS: i32 = 4;
 
 /// A straight line of the tip with an even turn.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +53,16 @@ impl Line {
         self.length < 2.0 * TOLERANCE && self.angle < 2.0 * TOLERANCE
     }
 
+    /// The first share (0 to 1) of the line.
+    pub(super) fn until(&self, share: f64) -> Self {
+        Self::new(self.from, self.at(share))
+    }
+
+    /// The line from its end to its start.
+    pub(super) fn reversed(&self) -> Self {
+        Self { from: self.to, to: self.from, ..*self }
+    }
+
     pub(super) fn at(&self, share: f64) -> Pose {
         let position = self.from.translation.vector.lerp(&self.to.translation.vector, share);
         let turn = self.from.rotation.rotation_to(&self.to.rotation).scaled_axis() * share;
@@ -68,11 +85,12 @@ impl ArmModel {
         spans: f64,
     ) -> Result<Vec<JointVector>, MotionRefusal> {
         let mut knots: Vec<JointVector> = Vec::new();
+        let centring = CENTRING * line.spans() / spans;
         for share in shares(spans) {
             let guess = match knots.as_slice() {
                 [] => *start,
-                [only] => self.onward(only, only),
-                [.., before, last] => self.onward(before, last),
+                [only] => self.onward(only, only, centring),
+                [.., before, last] => self.onward(before, last, centring),
             };
             let refused = || self.not_tracked(line, share, start);
             let next = self.follow(&line.at(share), &guess).ok_or_else(refused)?;
@@ -84,10 +102,23 @@ impl ArmModel {
         Ok(knots)
     }
 
-    /// The next knot if the joints go on as before and a little towards the middle, kept inside the limits.
-    fn onward(&self, before: &JointVector, last: &JointVector) -> JointVector {
+    /// True where the tip keeps to the line halfway between the knots of a path along it.
+    pub(super) fn keeps_to(&self, line: &Line, path: &JointPath) -> bool {
+        let spans = path.knots().len().saturating_sub(1);
+        (0..spans).all(|index| {
+            let share = (index as f64 + 0.5) / spans as f64;
+            let tip = self.chain.frames(&path.at(share).joints).tip;
+            twist_between(&tip, &Frame::from_pose(&line.at(share))).amax() <= DEVIATION
+        })
+    }
+
+    /// The next knot if the joints go on as before, kept inside the limits. Only what moves the tip goes on: the left-over freedom
+    /// creeps towards the middle of the ranges. Left to its swing it would go to and fro, and bend the way more than the line does.
+    fn onward(&self, before: &JointVector, last: &JointVector, centring: f64) -> JointVector {
         let limits = self.limits();
-        let next = last * 2.0 - before + self.free_motion(last, &(limits.middle() - last)) * CENTRING;
+        let step = last - before;
+        let wanted = (limits.middle() - last) * centring - step;
+        let next = last + step + self.free_motion(last, &wanted);
         next.zip_zip_map(&limits.lower, &limits.upper, f64::clamp)
     }
 

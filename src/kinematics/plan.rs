@@ -5,7 +5,7 @@
 
 use super::JointVector;
 use super::limits::{JOINT_TOLERANCE, MotionLimits};
-use super::line::{KNOT_ANGLE, Line, MOST_KNOTS, shares};
+use super::line::{DOUBLINGS, KNOT_ANGLE, Line, MOST_KNOTS, shares};
 use super::model::{ArmModel, RobotModel};
 use super::motion::{ArmMotion, PairMotion};
 use super::path::JointPath;
@@ -58,15 +58,37 @@ pub fn plan_pair(
         right: line(model.arm(Side::Right), &start.right, targets.right, limits)?,
     };
     let spans = Side::BOTH.into_iter().filter_map(|side| lines.get(side).as_ref().map(Line::spans)).fold(1.0, f64::max);
-    let track = |side: Side| match lines.get(side) {
-        None => Ok(vec![*start.get(side)]),
-        Some(line) => model.arm(side).follow_line(line, start.get(side), spans),
-    };
-    let paths = PerSide { left: track(Side::Left)?, right: track(Side::Right)? };
+    let paths = follow_lines(model, &lines, &start, spans)?;
     let extent = PerSide::from_fn(|side| {
         lines.get(side).as_ref().map_or(Extent::default(), |line| Extent { metres: line.length, radians: line.angle })
     });
     finish(model, scene, paths, extent, limits)
+}
+
+/// The knots of both arms along their lines, as many as the lines need to be kept.
+fn follow_lines(
+    model: &RobotModel,
+    lines: &PerSide<Option<Line>>,
+    start: &PerSide<JointVector>,
+    spans: f64,
+) -> Result<PerSide<Vec<JointVector>>, MotionRefusal> {
+    let mut doublings = 0;
+    loop {
+        let spans = spans * f64::from(1 << doublings);
+        let track = |side: Side| match lines.get(side) {
+            None => Ok(vec![*start.get(side)]),
+            Some(line) => model.arm(side).follow_line(line, start.get(side), spans),
+        };
+        let paths = PerSide { left: track(Side::Left)?, right: track(Side::Right)? };
+        let keeps = |side: Side| match (lines.get(side), JointPath::through(paths.get(side).clone())) {
+            (Some(line), Some(path)) => model.arm(side).keeps_to(line, &path),
+            _ => true,
+        };
+        if doublings == DOUBLINGS || Side::BOTH.into_iter().all(keeps) {
+            return Ok(paths);
+        }
+        doublings += 1;
+    }
 }
 
 /// A motion of both arms in step from posture to posture, each joint on its own straight way. An arm without a target stays.

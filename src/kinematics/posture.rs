@@ -22,6 +22,8 @@ const PITCH: f64 = std::f64::consts::FRAC_PI_6;
 const WAITING_OFFSET: Vector3<f64> = Vector3::new(-0.20, 0.0, -0.28);
 /// Postures that are tried for the start of each arm's way.
 const CANDIDATES: usize = 16;
+/// Where fewer candidates than this can follow an arm's way, more are looked for.
+const FEW: usize = 4;
 /// Pairs of postures that are compared, those with the most room in their joints first.
 const PAIRS: usize = 24;
 /// Metres between the arms that are worth as much as a joint in the middle of its range.
@@ -186,16 +188,42 @@ fn ranked_candidates(
     let first = first.ok_or(MotionRefusal::NotFinite { side: arm.side() })?;
     let starts = arm.solutions(first, CANDIDATES).map_err(|error| MotionRefusal::unreachable(arm, first, &error))?;
     let (mut stuck, mut candidates) = (None, Vec::new());
-    for start in starts {
-        match follow_way(arm, way, spans, &start, limits) {
-            Ok(candidate) => candidates.push(candidate),
-            Err(next) => stuck = furthest(stuck, next),
+    let mut follow = |starts: Vec<JointVector>| {
+        for start in starts {
+            match follow_way(arm, way, spans, &start, limits) {
+                Ok(candidate) => candidates.push(candidate),
+                Err(next) => stuck = furthest(stuck.take(), next),
+            }
         }
+        candidates.len()
+    };
+    if follow(starts) < FEW {
+        follow(postures_from_further_on(arm, way, spans));
     }
     match stuck {
         Some(Stuck { reason, .. }) if candidates.is_empty() => Err(reason),
         _ => Ok(candidates),
     }
+}
+
+/// Start postures that are found by going back from further on: a place that few postures can pass may lie on the way.
+fn postures_from_further_on(arm: &ArmModel, way: &Way, spans: &[f64]) -> Vec<JointVector> {
+    let lines: Vec<_> = way.lines().zip(spans.iter().copied()).collect();
+    let mut found = Vec::new();
+    for (index, (line, _)) in lines.iter().enumerate().filter(|(_, (line, _))| !line.is_still()) {
+        for share in [0.5, 1.0] {
+            let before = lines.iter().take(index).copied();
+            let back: Vec<_> = before.chain([(line.until(share), line.until(share).spans())]).rev().collect();
+            for there in arm.solutions(&line.at(share), CANDIDATES).unwrap_or_default() {
+                let here = back.iter().try_fold(there, |joints, (line, spans)| {
+                    let knots = arm.follow_line(&line.reversed(), &joints, *spans).ok()?;
+                    knots.last().copied()
+                });
+                found.extend(here);
+            }
+        }
+    }
+    found
 }
 
 /// Where a candidate could not go on.

@@ -1,6 +1,8 @@
 //! Why a motion is refused, in words for the operator: what, where, which value, and what would do.
 
+use super::JointVector;
 use super::collision::Proximity;
+use super::cone::OrientationTolerance;
 use super::inverse::InverseError;
 use super::limits::Workspace;
 use super::model::ArmModel;
@@ -43,15 +45,18 @@ pub enum MotionRefusal {
     },
     /// No joint positions bring the gripper there.
     #[error(
-        "the {side} gripper cannot reach {place:.3} with this orientation; the nearest it can do is {nearest:.3} (metres in base)"
+        "the {side} gripper cannot reach {place:.3} with this orientation; {} (metres in base)",
+        what_would_do(nearest, *tilt)
     )]
     OutOfReach {
         /// Which gripper.
         side: Side,
         /// Where on the line.
         place: Point,
-        /// The nearest place found.
+        /// The nearest place found at this orientation.
         nearest: Point,
+        /// By how many radians the gripper's axis would have to be tilted to reach the place, where that would do.
+        tilt: Option<f64>,
     },
     /// The place can be reached, but not in a straight line from this posture.
     #[error(
@@ -83,6 +88,25 @@ pub enum MotionRefusal {
     Timing(#[from] TimingError),
 }
 
+/// Tilts of the gripper that are tried for a place out of reach, radians: 10° to 60°.
+const TILTS: [f64; 6] = [0.175, 0.349, 0.524, 0.698, 0.873, 1.047];
+
+/// The first of [`TILTS`] with which a place is reached; the gripper may be turned about its axis as far.
+fn least_tilt(arm: &ArmModel, target: &Pose, seed: &JointVector) -> Option<f64> {
+    let reaches =
+        |tilt: &f64| arm.inverse_within(target, &OrientationTolerance { cone: *tilt, turn: *tilt }, seed).is_ok();
+    // Where not even the widest cone helps, the narrower ones need not be asked: a refusal must not take long.
+    TILTS.last().filter(|widest| reaches(widest)).and_then(|_| TILTS.into_iter().find(reaches))
+}
+
+/// The nearest thing that would do instead.
+fn what_would_do(nearest: &Point, tilt: Option<f64>) -> String {
+    let place = format!("the nearest it can do is {nearest:.3}");
+    tilt.map_or(place.clone(), |tilt| {
+        format!("{place}, or there with the gripper tilted by {:.0} degrees", tilt.to_degrees())
+    })
+}
+
 impl From<Proximity> for MotionRefusal {
     fn from(proximity: Proximity) -> Self {
         Self::Collision(proximity)
@@ -99,6 +123,7 @@ impl MotionRefusal {
                 side,
                 place: Point::from(target.translation.vector),
                 nearest: Point::from(arm.forward(nearest).translation.vector),
+                tilt: least_tilt(arm, target, nearest),
             },
         }
     }
