@@ -5,6 +5,7 @@
 
 pub mod exit;
 pub mod output;
+mod planning;
 
 mod bench;
 mod config;

@@ -7,9 +7,9 @@ pub mod stop;
 
 use crate::body::Side;
 use crate::command::{Command, Origin};
-use crate::kinematics::JointVector;
+use crate::kinematics::{JointVector, Scene};
 use crate::snapshot::Snapshot;
-use crate::supervisor::{Effect, Input, LinkEvent, Supervisor};
+use crate::supervisor::{Effect, Input, LinkEvent, PlanOrder, Supervisor};
 use crate::time::Stamp;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -34,6 +34,10 @@ pub trait Outlet: Send {
     fn setpoint(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Result<(), String>;
     /// Sends nothing more to an arm.
     fn release(&mut self, side: Side);
+    /// Takes what the arms keep away from; commands are judged by it from now on.
+    fn surround(&mut self, scene: Scene);
+    /// Passes a question on to the planner outside; its answer comes in as an input. Must not wait for it.
+    fn plan(&mut self, order: PlanOrder);
     /// Asks something of the robot's switch.
     fn switch(&mut self, request: crate::assembly::SwitchRequest);
     /// Shows a snapshot to other nodes.
@@ -252,6 +256,9 @@ impl Worker {
         let was_stopped = self.supervisor.is_stopped();
         let effects = self.supervisor.step(now, input);
         self.follow_stop(was_stopped, &effects);
+        if matches!(input, Input::Tick) {
+            self.outlet.surround(self.supervisor.surroundings());
+        }
         self.outlet.record(now, input, &effects);
         for effect in effects {
             self.carry_out(now, effect);
@@ -282,6 +289,7 @@ impl Worker {
                 }
             }
             Effect::Release { side } => self.outlet.release(side),
+            Effect::Plan(order) => self.outlet.plan(order),
             Effect::Switch(request) => self.outlet.switch(request),
             told => {
                 // Telling is best effort; the record has it all.

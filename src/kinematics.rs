@@ -22,6 +22,7 @@ mod refusal;
 mod scene;
 mod seeds;
 mod timing;
+mod ways;
 
 pub use chain::JOINTS;
 pub use collision::Proximity;
@@ -37,6 +38,7 @@ pub use posture::{Leg, dressing_orientation, start_postures, start_postures_for,
 pub use refusal::MotionRefusal;
 pub use scene::{BodyBuild, BodyPart, Capsule, Scene};
 pub use timing::TimingError;
+pub use ways::{Ways, plan_through};
 
 /// Positions (radians), speeds or accelerations of an arm's joints in the order s0, s1, e0, e1, w0, w1, w2.
 pub type JointVector = nalgebra::SVector<f64, JOINTS>;

@@ -11,6 +11,7 @@ mod drive;
 pub mod effect;
 pub mod input;
 mod operator;
+mod planner;
 mod protection;
 mod running;
 mod settings;
@@ -18,9 +19,9 @@ mod tuning;
 mod view;
 mod warm;
 
-pub use effect::{Effect, Effects};
+pub use effect::{Effect, Effects, PlanOrder};
 pub use input::{EndpointSample, Input, JointSample, LinkEvent};
-pub use settings::{SettingsError, Setup, SupervisorSettings};
+pub use settings::{PlannerKind, SettingsError, Setup, SupervisorSettings};
 pub use warm::WarmStart;
 
 use crate::assembly::{RobotState, StopSource, SwitchRequest};
@@ -78,6 +79,7 @@ pub struct Supervisor {
     pass_began: Option<Stamp>,
     last_tick: Option<Stamp>,
     body: Option<BodyPose>,
+    questions: planner::Questions,
     view: Snapshot,
     comparison: compare::Comparison,
     effects: Effects,
@@ -105,6 +107,7 @@ impl Supervisor {
             pass_began: None,
             last_tick: None,
             body: None,
+            questions: planner::Questions::default(),
             view: Snapshot::default(),
             comparison: compare::Comparison::default(),
             effects: Effects::new(),
@@ -125,6 +128,7 @@ impl Supervisor {
             Input::Body(pose) => self.see_body(now, pose),
             Input::Operator { command, origin } => self.obey(now, command, *origin),
             Input::Link(event) => self.see_link(now, event),
+            Input::Planned { number, ways } => self.see_planned(now, *number, ways),
             Input::SetpointRefused { side, reason } => {
                 self.hold(now, &format!("the {side} arm's next position was refused: {reason}"));
             }
@@ -178,6 +182,7 @@ impl Supervisor {
         self.drive.drop_motion();
         self.forget_contact();
         self.protection.end_retreat();
+        self.forget_question();
         self.effects.push(Effect::Stopped { outcome, cause: cause.to_owned() });
         self.log(now, Level::Error, "stop", format!("emergency stop (software): {cause}"));
         self.show_stop(now, cause);
@@ -213,6 +218,7 @@ impl Supervisor {
         self.mode = Mode::Held;
         self.forget_contact();
         self.protection.end_retreat();
+        self.forget_question();
         self.drive.halt();
         self.log(now, Level::Warning, "supervisor", format!("hold: {cause}"));
         self.show_hold(now, cause);

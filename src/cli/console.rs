@@ -5,6 +5,7 @@ mod lines;
 use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
+use super::planning::choose_planner;
 use super::recording::RecordArguments;
 use super::session::{Opening, Session};
 use super::sim::ros_failure;
@@ -28,6 +29,9 @@ pub(super) struct Arguments {
     /// The strategy that a trial begins with.
     #[arg(long)]
     strategy: Option<String>,
+    /// Who plans the straight lines: built_in or moveit.
+    #[arg(long)]
+    planner: Option<String>,
     /// Seed of everything random; it is recorded [default: 1].
     #[arg(long)]
     seed: Option<u64>,
@@ -138,6 +142,7 @@ fn prepare(arguments: &Arguments) -> Result<Prepared, Failure> {
     let watermark = if arguments.dry_run { Watermark::DryRun } else { Watermark::Live };
     let mut setup = settings.setup_for(&person, arguments.seed(), watermark).map_err(Failure::configuration)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
+    choose_planner(&mut setup, arguments.planner.as_deref())?;
     setup.settings.warm_start |= arguments.warm_start;
     Ok(Prepared { settings, person, setup, key })
 }

@@ -3,6 +3,7 @@
 //! Only glue: each part knows none of the others.
 
 use super::exit::Failure;
+use super::planning::PlannerThread;
 use super::recording::Recording;
 use super::sim::ros_failure;
 use crate::assembly::SwitchRequest;
@@ -11,12 +12,12 @@ use crate::command::{Command, CommandOutcome, CommandReceipt, Origin};
 use crate::config::LoadedProfile;
 use crate::engine::stop::StopThread;
 use crate::engine::{Engine, Inbox, Outlet, SharedSnapshot};
-use crate::kinematics::{JointVector, RobotModel};
+use crate::kinematics::{JointVector, RobotModel, Scene};
 use crate::record::{Recorder, RecorderNotice};
 use crate::robot::{GuardSettings, GuardedLimb, GuardedPair};
 use crate::ros::{Commander, DepthWatcher, LinkSettings, Node, RobotLink, RosLimb, Showing, TopicReport, leave};
 use crate::snapshot::{Freshness, RecorderView, Shared, Snapshot, TopicHealth};
-use crate::supervisor::{Effect, Input, LinkEvent, Setup, Supervisor};
+use crate::supervisor::{Effect, Input, LinkEvent, PlanOrder, PlannerKind, Setup, Supervisor};
 use crate::time::Stamp;
 use std::sync::{Arc, OnceLock, Weak};
 use std::time::{Duration, Instant};
@@ -52,6 +53,7 @@ struct RobotOutlet {
     commander: Option<Commander>,
     showing: Showing,
     recorder: Option<Arc<Recorder>>,
+    planner: Option<PlannerThread>,
     shell: ShellView,
 }
 
@@ -82,6 +84,18 @@ impl Outlet for RobotOutlet {
 
     fn release(&mut self, _side: Side) {
         // Sending nothing more is all: the robot holds by its own time-out.
+    }
+
+    fn plan(&mut self, order: PlanOrder) {
+        if let Some(planner) = &self.planner {
+            planner.ask(order);
+        }
+    }
+
+    fn surround(&mut self, scene: Scene) {
+        if let Some(limbs) = self.limbs.as_mut() {
+            limbs.surround(scene);
+        }
     }
 
     fn switch(&mut self, request: SwitchRequest) {
@@ -130,8 +144,12 @@ impl Session {
         let recorder = opening.recording.as_ref();
         let recorder = recorder.map(|place| place.start(&opening.setup, opening.person, told)).transpose()?;
         let recorder = recorder.map(Arc::new);
+        let is_planned_outside = opening.setup.settings.planner == PlannerKind::MoveIt;
         let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
         let node = opening.node;
+        let answers = sink.clone();
+        let planner = is_planned_outside.then(|| PlannerThread::start(&node, model.clone(), answers));
+        let planner = planner.transpose().map_err(Failure::fault)?;
         let link =
             RobotLink::connect(&node, LinkSettings { is_dry_run: opening.is_dry_run }, sink).map_err(ros_failure)?;
         let publisher = link.stop_publisher();
@@ -160,6 +178,7 @@ impl Session {
             commander: link.commander(),
             showing: link.showing(),
             recorder: recorder.clone(),
+            planner,
             shell: shell.clone(),
         };
         let engine = Engine::start(supervisor, Box::new(outlet), latch).map_err(Failure::fault)?;

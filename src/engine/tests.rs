@@ -11,6 +11,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// What reached the outlet.
 #[derive(Clone, Debug, PartialEq)]
 enum Told {
+    Plan(u64),
     Setpoint(Side, JointVector),
     Release(Side),
     Switch(SwitchRequest),
@@ -33,6 +34,14 @@ impl Outlet for FakeOutlet {
 
     fn release(&mut self, side: Side) {
         self.told.send(Told::Release(side)).unwrap();
+    }
+
+    fn surround(&mut self, scene: Scene) {
+        assert!(scene.person.is_empty(), "nobody was seen");
+    }
+
+    fn plan(&mut self, order: PlanOrder) {
+        self.told.send(Told::Plan(order.number)).unwrap();
     }
 
     fn switch(&mut self, request: SwitchRequest) {
@@ -286,6 +295,8 @@ fn a_stop_message_leaves_while_the_worker_hangs() {
             Ok(())
         }
         fn release(&mut self, _: Side) {}
+        fn surround(&mut self, _: Scene) {}
+        fn plan(&mut self, _: PlanOrder) {}
         fn switch(&mut self, _: SwitchRequest) {}
         fn show(&mut self, _: &Snapshot) {
             let _ = self.0.recv();

@@ -19,7 +19,7 @@ pub(super) const KNOT_ANGLE: f64 = 0.02;
 /// Most knots of a path: 3 m at the spacing above, more than an arm can reach.
 pub(super) const MOST_KNOTS: f64 = 1500.0;
 /// A joint that moves further than this (radians) from knot to knot jumps to another posture.
-const JUMP: f64 = 0.1;
+pub(super) const JUMP: f64 = 0.1;
 /// How far the left-over freedom goes towards the middle of the joint ranges on [`KNOT_SPACING`], as a share.
 const CENTRING: f64 = 0.004;
 /// How far the spline may leave the line halfway between knots, in metres and radians: half of what is promised of a line.
@@ -61,6 +61,19 @@ impl Line {
     /// The line from its end to its start.
     pub(super) fn reversed(&self) -> Self {
         Self { from: self.to, to: self.from, ..*self }
+    }
+
+    /// How far a pose is from the line, or from the place at one share of it: the larger of metres and radians.
+    pub(super) fn deviation(&self, pose: &Pose, share: Option<f64>) -> f64 {
+        let along = self.to.translation.vector - self.from.translation.vector;
+        let from_start = pose.translation.vector - self.from.translation.vector;
+        let nearest = if self.length > TOLERANCE { from_start.dot(&along) / along.norm_squared() } else { 0.5 };
+        let there = self.at(share.unwrap_or(nearest).clamp(0.0, 1.0));
+        let place = (pose.translation.vector - there.translation.vector).norm();
+        // A turn on the spot has no nearest share: its ends bound it.
+        let turn =
+            if self.length > TOLERANCE || share.is_some() { pose.rotation.angle_to(&there.rotation) } else { 0.0 };
+        place.max(turn)
     }
 
     pub(super) fn at(&self, share: f64) -> Pose {

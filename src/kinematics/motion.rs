@@ -5,7 +5,7 @@
 use super::JointVector;
 use super::chain::Chain;
 use super::path::JointPath;
-use super::timing::{PathLimits, PathTiming};
+use super::timing::{PathLimits, PathState, PathTiming};
 use crate::body::{PerSide, Side};
 use crate::geometry::Pose;
 use std::time::Duration;
@@ -29,7 +29,20 @@ pub struct PairMotion {
     pub(super) arms: PerSide<ArmMotion>,
     pub(super) timing: PathTiming,
     pub(super) limits: PathLimits,
+    pub(super) braking: Braking,
 }
+
+/// What bounds how hard a motion may brake.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Braking {
+    /// The highest acceleration of the parameter with which no gripper breaks its own limit.
+    pub(super) grippers: f64,
+    /// What of each joint's acceleration (radians per second squared) is for speeding up and braking; the rest is for bends.
+    pub(super) joints: JointVector,
+}
+
+/// At so many places ahead is looked for how hard a motion may brake: some ten a knot's span on a usual stop.
+const PLACES_AHEAD: usize = 48;
 
 #[derive(Clone, Debug)]
 pub(super) struct ArmMotion {
@@ -76,9 +89,29 @@ impl PairMotion {
     #[must_use]
     pub fn halt(&self, elapsed: Duration) -> Self {
         let state = self.timing.at(elapsed.as_secs_f64());
+        let limits = PathLimits { acceleration: self.deceleration(&state), ..self.limits };
         // A profile that the generator refuses cannot be followed: then standing still is the only safe answer.
-        let timing = PathTiming::stop(&state, &self.limits).unwrap_or_else(|_| PathTiming::rest(state.parameter));
-        Self { arms: self.arms.clone(), timing, limits: self.limits }
+        let timing = PathTiming::stop(&state, &limits).unwrap_or_else(|_| PathTiming::rest(state.parameter));
+        Self { arms: self.arms.clone(), timing, ..*self }
+    }
+
+    /// How hard the motion may brake from a state: what the part of the path asks for that it could need to stop. The limits of
+    /// the whole path are those of its steepest place, and a stop elsewhere would take longer than it must.
+    fn deceleration(&self, state: &PathState) -> f64 {
+        let whole = &self.limits;
+        // No stop is longer than that with the limits of the whole path, from its highest acceleration on.
+        let seconds = state.speed / whole.acceleration + 2.0 * whole.acceleration / whole.jerk;
+        let ahead = (state.speed + state.acceleration.max(0.0) * seconds) * seconds;
+        let mut most = self.braking.grippers;
+        for index in 0..=PLACES_AHEAD {
+            let parameter = state.parameter + ahead * index as f64 / PLACES_AHEAD as f64;
+            for side in Side::BOTH {
+                let slope = self.arms.get(side).path.at(parameter).slope;
+                let joints = slope.iter().zip(self.braking.joints.iter());
+                most = joints.fold(most, |most, (slope, acceleration)| most.min(acceleration / slope.abs()));
+            }
+        }
+        most.max(whole.acceleration)
     }
 }
 

@@ -7,7 +7,7 @@ use super::JointVector;
 use super::limits::{JOINT_TOLERANCE, MotionLimits};
 use super::line::{DOUBLINGS, KNOT_ANGLE, Line, MOST_KNOTS, shares};
 use super::model::{ArmModel, RobotModel};
-use super::motion::{ArmMotion, PairMotion};
+use super::motion::{ArmMotion, Braking, PairMotion};
 use super::path::JointPath;
 use super::refusal::MotionRefusal;
 use super::scene::Scene;
@@ -15,14 +15,17 @@ use super::timing::{PathLimits, PathTiming};
 use crate::body::{PerSide, Side};
 use crate::geometry::{Finite, Point, Pose};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use serde::{Deserialize, Serialize};
 
 /// Share of the limits that a plan uses: between the places where a path's slope is looked at it may be a little steeper.
 const HEADROOM: f64 = 0.95;
+/// A path of no extent takes the minimum duration whatever its limits are; they must only be finite.
+const MOST: f64 = 1e3;
 /// How far outside its range (radians) a measured joint may be: encoder steps and the robot's own control error (0.5°).
 const START_TOLERANCE: f64 = 0.009;
 
 /// Where a gripper is to go.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Position of the tip in `base`, metres.
     pub position: Point,
@@ -53,16 +56,33 @@ pub fn plan_pair(
     limits: &MotionLimits,
 ) -> Result<PairMotion, MotionRefusal> {
     let start = checked_start(model, start)?;
-    let lines = PerSide {
+    let lines = lines_of(model, &start, targets, limits)?;
+    let paths = follow_lines(model, &lines, &start, spans_of(&lines))?;
+    finish(model, scene, paths, extent_of(&lines), limits)
+}
+
+/// The lines from where the grippers are to their targets; `None` for an arm that stays.
+pub(super) fn lines_of(
+    model: &RobotModel,
+    start: &PerSide<JointVector>,
+    targets: &PerSide<Option<Target>>,
+    limits: &MotionLimits,
+) -> Result<PerSide<Option<Line>>, MotionRefusal> {
+    Ok(PerSide {
         left: line(model.arm(Side::Left), &start.left, targets.left, limits)?,
         right: line(model.arm(Side::Right), &start.right, targets.right, limits)?,
-    };
-    let spans = Side::BOTH.into_iter().filter_map(|side| lines.get(side).as_ref().map(Line::spans)).fold(1.0, f64::max);
-    let paths = follow_lines(model, &lines, &start, spans)?;
-    let extent = PerSide::from_fn(|side| {
+    })
+}
+
+/// As many spans as the line that needs more.
+pub(super) fn spans_of(lines: &PerSide<Option<Line>>) -> f64 {
+    Side::BOTH.into_iter().filter_map(|side| lines.get(side).as_ref().map(Line::spans)).fold(1.0, f64::max)
+}
+
+pub(super) fn extent_of(lines: &PerSide<Option<Line>>) -> PerSide<Extent> {
+    PerSide::from_fn(|side| {
         lines.get(side).as_ref().map_or(Extent::default(), |line| Extent { metres: line.length, radians: line.angle })
-    });
-    finish(model, scene, paths, extent, limits)
+    })
 }
 
 /// The knots of both arms along their lines, as many as the lines need to be kept.
@@ -123,12 +143,15 @@ pub fn plan_postures(
 
 /// The fastest that a gripper moves per unit of the path's parameter.
 #[derive(Clone, Copy, Debug, Default)]
-struct Extent {
+pub(super) struct Extent {
     metres: f64,
     radians: f64,
 }
 
-fn checked_start(model: &RobotModel, start: &PerSide<JointVector>) -> Result<PerSide<JointVector>, MotionRefusal> {
+pub(super) fn checked_start(
+    model: &RobotModel,
+    start: &PerSide<JointVector>,
+) -> Result<PerSide<JointVector>, MotionRefusal> {
     for (side, joints) in start.iter() {
         check_posture(model.arm(side), joints, START_TOLERANCE)?;
     }
@@ -178,7 +201,7 @@ fn swept(arm: &ArmModel, knots: &[JointVector]) -> Extent {
     })
 }
 
-fn finish(
+pub(super) fn finish(
     model: &RobotModel,
     scene: &Scene,
     knots: PerSide<Vec<JointVector>>,
@@ -198,7 +221,9 @@ fn finish(
         left: ArmMotion { chain: model.arm(Side::Left).chain.clone(), path: paths.left },
         right: ArmMotion { chain: model.arm(Side::Right).chain.clone(), path: paths.right },
     };
-    Ok(PairMotion { arms, timing, limits: bounds })
+    let grippers = extent.iter().map(|(_, extent)| limits.acceleration / extent.metres).fold(MOST, f64::min) * HEADROOM;
+    let braking = Braking { grippers, joints: limits.joint_acceleration * (0.5 * HEADROOM) };
+    Ok(PairMotion { arms, timing, limits: bounds, braking })
 }
 
 /// Where a joint runs against its limit the way bends there, and its spline may swing beyond: such a way is refused.
@@ -211,8 +236,6 @@ fn check_between_knots(arm: &ArmModel, path: &JointPath) -> Result<(), MotionRef
 ///
 /// Joint acceleration is slope · s̈ + curvature · ṡ²: each of the two gets half of what is allowed.
 fn path_limits(paths: &PerSide<JointPath>, extent: &PerSide<Extent>, limits: &MotionLimits) -> PathLimits {
-    // A path of no extent takes the minimum duration whatever its limits are; they must only be finite.
-    const MOST: f64 = 1e3;
     let mut bounds = PathLimits { speed: MOST, acceleration: MOST, jerk: MOST };
     for (side, path) in paths.iter() {
         let extent = extent.get(side);

@@ -83,6 +83,12 @@ pub enum MotionRefusal {
     /// Two things would touch or come closer than allowed.
     #[error("{} would come within {:.3} m of {}; at least {:.3} m is kept", .0.first, .0.distance, .0.second, .0.least)]
     Collision(Proximity),
+    /// Another planner refused, did not answer, or answered something else than was asked for.
+    #[error("the planner outside valet gave no way: {reason}")]
+    Planner {
+        /// Its words, or what is wrong with its way.
+        reason: String,
+    },
     /// No speed profile keeps the limits.
     #[error(transparent)]
     Timing(#[from] TimingError),

@@ -149,6 +149,8 @@ impl CsvFiles {
             Input::Link(_) if anonymous => self.events.write_record([time, "link", ""]),
             Input::Operator { command, .. } => self.events.write_record([time, "operator", &command.to_string()]),
             Input::SetpointRefused { reason, .. } => self.events.write_record([time, "refused", reason]),
+            Input::Planned { ways: Ok(_), number } => self.events.write_record([time, "planned", &number.to_string()]),
+            Input::Planned { ways: Err(reason), .. } => self.events.write_record([time, "not planned", reason]),
             Input::Link(event) => self.events.write_record([time, "link", &format!("{event:?}")]),
             Input::Tick | Input::Collision { .. } | Input::Body(_) => Ok(()),
         }

@@ -10,6 +10,10 @@ use crate::time::Stamp;
 /// Metres by which a command may miss a distance: planners round too.
 const SLACK: f64 = 5e-4;
 
+/// The share of a plan's distance to the person that commands keep. A person breathes and sways by some millimetres after a
+/// plan was made with all of it; whoever comes nearer than half of it halts the arms.
+pub const STREAMED_SHARE: f64 = 0.5;
+
 /// Both arms behind their guards.
 #[derive(Debug)]
 pub struct GuardedPair<L> {
@@ -30,9 +34,10 @@ impl<L: Limb> GuardedPair<L> {
         self.limbs.get_mut(side).observe(arrival, positions);
     }
 
-    /// Takes where the person is: commands are judged by it from now on.
+    /// Takes where the person is: commands are judged by it from now on. Plans keep the scene's margin, commands
+    /// [`STREAMED_SHARE`] of it.
     pub fn surround(&mut self, scene: Scene) {
-        self.scene = scene;
+        self.scene = Scene { margin: scene.margin * STREAMED_SHARE, ..scene };
     }
 
     /// One arm behind its guard.

@@ -70,3 +70,10 @@ pub fn topic_types(master: &str, caller: &str) -> Result<BTreeMap<String, String
     });
     Ok(pairs.collect())
 }
+
+/// A parameter that is text, as long as a robot description may be; `None` where the master has none or does not answer in time.
+#[must_use]
+pub fn text_parameter(master: &str, caller: &str, name: &str) -> Option<String> {
+    let value = call_ros(master, "getParam", &[Value::text(caller), Value::text(name)], MASTER_LIMIT).ok()?;
+    value.as_text().map(str::to_owned)
+}

@@ -38,6 +38,8 @@ rosrust::rosmsg_include!(
     rosgraph_msgs / Log,
     std_srvs / Trigger,
     trajectory_msgs / JointTrajectory,
+    moveit_msgs / GetCartesianPath,
+    moveit_msgs_melodic / GetCartesianPath,
     valet_msgs / State,
     valet_msgs / Force,
     valet_msgs / Snapshot

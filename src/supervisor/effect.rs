@@ -5,15 +5,26 @@
 
 use super::WarmStart;
 use crate::assembly::SwitchRequest;
-use crate::body::Side;
+use crate::body::{PerSide, Side};
 use crate::command::CommandReceipt;
-use crate::kinematics::JointVector;
+use crate::kinematics::{JointVector, Target};
 pub use crate::snapshot::{Level, Outcome};
 use crate::strategy::{IterationSummary, StrategyKind, WaypointChange};
 use serde::{Deserialize, Serialize};
 
 /// The answers to one input, in the order in which they are to be carried out.
 pub type Effects = Vec<Effect>;
+
+/// What a planner outside is asked: ways along straight lines.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlanOrder {
+    /// Which question this is: the answer names it.
+    pub number: u64,
+    /// Where the arms are, radians.
+    pub start: PerSide<JointVector>,
+    /// Where the grippers are to go; an arm without a target stays.
+    pub targets: PerSide<Option<Target>>,
+}
 
 /// One decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +42,8 @@ pub enum Effect {
         /// Which arm.
         side: Side,
     },
+    /// Ask the planner outside for ways; it answers with [`super::Input::Planned`].
+    Plan(PlanOrder),
     /// Ask something of the robot's switch.
     Switch(SwitchRequest),
     /// A stop was latched.

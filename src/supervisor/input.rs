@@ -7,6 +7,7 @@ use crate::assembly::RobotState;
 use crate::body::{BodyPose, PerSide, Side};
 use crate::command::{Command, Origin};
 use crate::geometry::{Pose, Wrench};
+use crate::kinematics::Ways;
 use crate::time::Stamp;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,13 @@ pub enum Input {
     },
     /// Something about the connection to the robot changed.
     Link(LinkEvent),
+    /// The planner outside has answered.
+    Planned {
+        /// Which question.
+        number: u64,
+        /// The ways, or why there are none.
+        ways: Result<Ways, String>,
+    },
     /// A setpoint did not leave: a guard refused it. The text says what, value and range.
     SetpointRefused {
         /// Which arm.

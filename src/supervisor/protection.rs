@@ -63,7 +63,7 @@ impl Protection {
         };
         Ok(Self {
             arms: PerSide { left: arm()?, right: arm()? },
-            watchdogs: Watchdogs::new(settings.watch),
+            watchdogs: Watchdogs::new(settings.watch_settings()),
             settings: settings.clone(),
             robot: None,
             stop: StopState::default(),

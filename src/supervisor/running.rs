@@ -21,7 +21,7 @@ const LONGEST_SPAN: Duration = Duration::from_millis(20);
 impl Supervisor {
     /// Starts the motion that the trial asks for, where none is under way.
     pub(super) fn give_orders(&mut self, now: Stamp) {
-        if self.drive.phase() != Phase::Holding || self.contact.is_some() {
+        if self.drive.phase() != Phase::Holding || self.contact.is_some() || self.questions.is_open() {
             return;
         }
         let Some(Order::Move { targets, least_seconds }) = self.trial.as_ref().map(Trial::order) else {
@@ -31,7 +31,19 @@ impl Supervisor {
             self.hold(now, "the positions of the robot's joints are not known");
             return;
         };
-        let planned = self.plan(&start, &targets, least_seconds);
+        let mut limits = self.setup.settings.motion.clone();
+        limits.minimum_duration = Duration::try_from_secs_f64(least_seconds).unwrap_or_default();
+        let stands_back = self.trial.as_ref().is_some_and(|trial| matches!(trial.stage(), Stage::StandBack));
+        if self.plans_outside() && !stands_back {
+            self.ask_planner(now, start, targets.map(|_, place| place.map(Target::position)), limits);
+            return;
+        }
+        let planned = self.plan(&start, &targets, &limits);
+        self.begin(now, planned);
+    }
+
+    /// Starts a motion that was planned, or holds where there is none.
+    pub(super) fn begin(&mut self, now: Stamp, planned: Result<PairMotion, MotionRefusal>) {
         // Planning takes longer than a beat, and both arms are at rest meanwhile.
         self.protection.watchdogs_mut().pause_beat();
         match planned {
@@ -49,18 +61,16 @@ impl Supervisor {
         &self,
         start: &PerSide<JointVector>,
         targets: &PerSide<Option<Point>>,
-        least_seconds: f64,
+        limits: &MotionLimits,
     ) -> Result<PairMotion, MotionRefusal> {
-        let mut limits = self.setup.settings.motion.clone();
-        limits.minimum_duration = Duration::try_from_secs_f64(least_seconds).unwrap_or_default();
         let trial = self.trial.as_ref();
         let scene = self.scene(trial.map_or(self.setup.settings.trial.first_arm, Trial::arm));
         if let Some(trial) = trial.filter(|trial| matches!(trial.stage(), Stage::StandBack)) {
-            let posture = self.start_posture(trial, &limits)?;
-            return plan_postures(&self.model, &scene, start, &posture.map(|_, joints| Some(*joints)), &limits);
+            let posture = self.start_posture(trial, limits)?;
+            return plan_postures(&self.model, &scene, start, &posture.map(|_, joints| Some(*joints)), limits);
         }
         let targets = targets.map(|_, place| place.map(Target::position));
-        plan_pair(&self.model, &scene, start, &targets, &limits)
+        plan_pair(&self.model, &scene, start, &targets, limits)
     }
 
     /// Postures from which both of the person's arms can be dressed; where there are none, from which the first one can:
@@ -78,10 +88,16 @@ impl Supervisor {
 
     /// What the arms keep away from while the person's `arm` is dressed: the person as seen, but for the arms that the
     /// garment is led along.
-    fn scene(&self, arm: Side) -> Scene {
+    pub(super) fn scene(&self, arm: Side) -> Scene {
         let Some(body) = self.body.as_ref() else { return Scene::default() };
         let first = self.setup.settings.trial.first_arm;
         Scene::around(body, &self.setup.build, &PerSide::from_fn(|side| side == arm || side == first))
+    }
+
+    /// What the guards at the ports are to keep the arms away from: what the motion under way was planned against.
+    #[must_use]
+    pub fn surroundings(&self) -> Scene {
+        self.scene(self.trial.as_ref().map_or(self.setup.settings.trial.first_arm, Trial::arm))
     }
 
     /// Samples the motion, sends what comes of it and reports arrivals.
@@ -196,6 +212,7 @@ impl Supervisor {
         self.mode = Mode::Idle;
         self.trial = None;
         self.forget_contact();
+        self.forget_question();
         self.pending_strategy = None;
         self.protection.end_retreat();
         self.drive.drop_motion();

@@ -9,6 +9,7 @@ use crate::sequencing::TrialSettings;
 use crate::snapshot::Watermark;
 use crate::strategy::{StrategyKind, StrategySettings};
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 use thiserror::Error;
 
 /// The settings of the rooms that the supervisor owns.
@@ -23,6 +24,8 @@ pub struct SupervisorSettings {
     pub trial: TrialSettings,
     /// How the arms may move.
     pub motion: MotionLimits,
+    /// Who plans straight lines.
+    pub planner: PlannerKind,
     /// The detector's window.
     pub window: WindowSettings,
     /// Axes and sign of the robot's wrench.
@@ -45,12 +48,43 @@ impl Default for SupervisorSettings {
             strategies: StrategySettings::default(),
             trial: TrialSettings::default(),
             motion: MotionLimits::default(),
+            planner: PlannerKind::default(),
             window: WindowSettings::default(),
             wrench: WrenchConversion::default(),
             guard: GuardSettings::default(),
             watch: WatchSettings::default(),
             settling_seconds: 0.3,
             warm_start: false,
+        }
+    }
+}
+
+/// Who plans the straight lines of a trial. Whoever plans, valet checks, times and streams.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PlannerKind {
+    /// valet itself.
+    #[default]
+    BuiltIn,
+    /// MoveIt's `move_group` on the same graph.
+    #[serde(rename = "moveit")]
+    MoveIt,
+}
+
+impl PlannerKind {
+    /// All of them, with the names that settings and arguments use.
+    pub const ALL: [(&'static str, Self); 2] = [("built_in", Self::BuiltIn), ("moveit", Self::MoveIt)];
+}
+
+/// How long a planner outside this process may take before the trial is held: two arms, each a look-up, a greeting and an answer.
+const OUTSIDE_PLANNER: Duration = Duration::from_secs(6);
+
+impl SupervisorSettings {
+    /// The limits of the watchdogs for the planner that is chosen.
+    pub(super) fn watch_settings(&self) -> WatchSettings {
+        match self.planner {
+            PlannerKind::BuiltIn => self.watch,
+            PlannerKind::MoveIt => WatchSettings { planner: self.watch.planner.max(OUTSIDE_PLANNER), ..self.watch },
         }
     }
 }

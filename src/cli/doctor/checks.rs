@@ -2,6 +2,7 @@
 
 use crate::assembly::{RedButton, RobotState};
 use crate::body::{PerSide, Side};
+use crate::kinematics::JointVector;
 use crate::ros::TopicReport;
 use crate::ros::graph::Graph;
 use crate::snapshot::Verdict;
@@ -26,7 +27,7 @@ pub(super) struct Check {
 }
 
 impl Check {
-    fn new(name: impl Into<String>, verdict: Verdict, value: impl Into<String>, hint: &str) -> Self {
+    pub(super) fn new(name: impl Into<String>, verdict: Verdict, value: impl Into<String>, hint: &str) -> Self {
         let hint = if verdict == Verdict::Good { String::new() } else { hint.to_owned() };
         Self { event: "check", name: name.into(), verdict, value: value.into(), age_seconds: None, hint }
     }
@@ -57,6 +58,7 @@ pub(super) struct Findings {
     clock_offset: Option<f64>,
     body: Option<Stamp>,
     colliding: PerSide<bool>,
+    joints: PerSide<[Option<f64>; 7]>,
 }
 
 impl Findings {
@@ -70,6 +72,13 @@ impl Findings {
                 let better = self.clock_offset.is_none_or(|known| offset > known);
                 self.clock_offset = if better { Some(offset) } else { self.clock_offset };
             }
+            Input::Joints(sample) => {
+                for (side, positions) in sample.positions.iter() {
+                    for (known, position) in self.joints.get_mut(side).iter_mut().zip(positions) {
+                        *known = position.or(*known);
+                    }
+                }
+            }
             Input::Body(pose) => self.body = Some(pose.stamp),
             Input::Collision { side, active } => *self.colliding.get_mut(*side) = *active,
             _ => {}
@@ -77,7 +86,15 @@ impl Findings {
     }
 }
 
-/// The whole list.
+impl Findings {
+    /// All joints of an arm, radians, where all were heard.
+    pub(super) fn joints(&self, side: Side) -> Option<JointVector> {
+        let known: Option<Vec<f64>> = self.joints.get(side).iter().copied().collect();
+        known.map(|known| JointVector::from_column_slice(&known))
+    }
+}
+
+/// The list, but for the arms.
 pub(super) fn all(
     findings: &Findings,
     topics: &[TopicReport],
