@@ -12,7 +12,7 @@ const SLACK: f64 = 5e-4;
 
 /// The share of a plan's distance to the person that commands keep. A person breathes and sways by some millimetres after a
 /// plan was made with all of it; whoever comes nearer than half of it halts the arms.
-pub const STREAMED_SHARE: f64 = 0.5;
+pub(super) const STREAMED_SHARE: f64 = 0.5;
 
 /// Both arms behind their guards.
 #[derive(Debug)]

@@ -211,7 +211,7 @@ mod tests {
             Ok(PerSide::from_fn(|side| {
                 let (arm, mut joints) = (model.arm(side), *start.get(side));
                 let here = arm.forward(&joints);
-                let to = targets.get(side)?.position.coords;
+                let to = targets.get(side).as_ref()?.position.coords;
                 (0..=10)
                     .map(|index| {
                         let mut pose = here;

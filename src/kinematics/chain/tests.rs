@@ -31,7 +31,7 @@ fn forward_kinematics_agree_with_another_library_to_a_nanometre() {
     let model = RobotModel::baxter().unwrap();
     for side in Side::BOTH {
         let cases = cases(side);
-        assert_eq!(cases.len(), 50);
+        assert_eq!(cases.len(), 100);
         for case in cases {
             let pose = model.arm(side).forward(&JointVector::from(case.joints));
             assert!((pose.translation.vector - Vector3::from(case.position)).norm() < 1e-9);
