@@ -146,6 +146,15 @@ class NodeUnderTest(unittest.TestCase):
         time.sleep(seconds)
         self.assertEqual(self.robot.count(since), 0, "the robot was commanded")
 
+    def still_for(self, seconds):
+        """The arms are asked for one posture alone: a hold keeps them where they are, once they have braked."""
+        time.sleep(1.0)
+        since = time.monotonic()
+        time.sleep(seconds)
+        with self.robot.lock:
+            asked = {(side, tuple(message.command)) for at, side, message in self.robot.commands if at >= since}
+        self.assertLessEqual(len(asked), 2, "the arms were moved")
+
     def until(self, what, condition, act=None):
         end = time.monotonic() + peer.PATIENCE
         while time.monotonic() < end:
@@ -178,7 +187,7 @@ class NodeUnderTest(unittest.TestCase):
             return any(word in line for line in lines for word in words)
 
         self.until("one of %s" % (words,), said, self.go_on)
-        self.quiet_for(1.0)
+        self.still_for(1.0)
 
     def go_on(self):
         self.valet.type("continue")

@@ -29,6 +29,7 @@ def make_messages():
         subprocess.check_call([generator, "--initpy", "-p", package, "-o", out])
         open(os.path.join(folder, package, "__init__.py"), "w").close()
     sys.path.insert(0, folder)
+    return folder
 
 
 class Valet:

@@ -21,6 +21,8 @@ def free_port():
 
 PORT = free_port()
 ENVIRONMENT = dict(os.environ, ROS_MASTER_URI="http://127.0.0.1:%d/" % PORT, ROS_IP="127.0.0.1")
+# rostopic shows messages of packages that Debian does not have.
+ENVIRONMENT["PYTHONPATH"] = os.pathsep.join(filter(None, [peer.make_messages(), os.environ.get("PYTHONPATH")]))
 
 
 def tool(*words, seconds=20):
