@@ -14,6 +14,7 @@ pub mod part;
 pub mod probe;
 pub mod training;
 pub mod tree;
+pub mod walk;
 
 pub use camera::{CameraError, Intrinsics};
 pub use depth::{DepthError, DepthImage, RawImage};

@@ -15,7 +15,8 @@ use super::depth::DepthImage;
 use super::foreground::{Facing, Pixel, View, ViewError};
 use super::part::{CLASSES, NONE, OTHER, Part, parts_of};
 use super::probe::ProbeImage;
-use super::tree::{Forest, NO_VOTE, VOTED, vote_index};
+use super::tree::{Forest, Leaf, NO_VOTE, VOTED, vote_index};
+use super::walk;
 use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide, Side};
 use crate::geometry::{Point, Pose, Vector};
 use crate::time::Stamp;
@@ -79,6 +80,8 @@ pub struct PoseFinder {
     probe: ProbeImage,
     pixels: Vec<Pixel>,
     classified: Vec<Classified>,
+    /// The leaf of each pixel, for each tree.
+    leaves: Vec<Vec<u32>>,
     votes: [Vec<VotePoint>; VOTED],
     modes: ModeFinder,
     lengths: SegmentLengths,
@@ -96,6 +99,7 @@ impl PoseFinder {
             probe: ProbeImage::default(),
             pixels: Vec::new(),
             classified: Vec::new(),
+            leaves: Vec::new(),
             votes: Default::default(),
             modes: ModeFinder::default(),
             lengths: SegmentLengths::default(),
@@ -170,29 +174,36 @@ impl PoseFinder {
         }
     }
 
-    /// Sends every pixel through every tree; every second one votes.
+    /// Sends every pixel through every tree; every second one of every second row votes.
     #[expect(clippy::cast_possible_truncation, reason = "a ratio of focal lengths")]
     fn classify(&mut self, camera: &Intrinsics) {
         self.classified.clear();
         self.votes.iter_mut().for_each(Vec::clear);
         let ratio = (camera.fx / self.forest.focal) as f32;
+        self.leaves.resize_with(self.forest.trees().len(), Vec::new);
+        for (tree, leaves) in self.forest.trees().iter().zip(&mut self.leaves) {
+            walk::leaves(tree, &self.probe, &self.pixels, ratio, leaves);
+        }
         let mut certain = 0_u64;
         let full = 255 * self.forest.trees().len().max(1);
-        for pixel in &self.pixels {
-            let place = (f32::from(pixel.column), f32::from(pixel.row));
-            let per_metre = 1000.0 / f32::from(pixel.depth) * ratio;
-            let leaf = |tree: &super::tree::Tree| tree.leaf(&self.probe, place, per_metre);
-            let shares = self.forest.shares(self.forest.trees().iter().map(leaf));
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let ends = || {
+                let ends = self.forest.trees().iter().zip(&self.leaves);
+                ends.filter_map(|(tree, leaves)| leaves.get(index).and_then(|number| tree.leaf_content(*number)))
+            };
+            let mut shares = [0_u32; CLASSES];
+            for leaf in ends() {
+                shares.iter_mut().zip(leaf.shares).for_each(|(sum, share)| *sum += u32::from(share));
+            }
             let (label, share) = most(&shares);
             certain += u64::from(share);
             self.classified.push(Classified { pixel: *pixel, label });
             if pixel.column.is_multiple_of(VOTING_STEP) && pixel.row.is_multiple_of(VOTING_STEP) {
-                let point =
-                    camera.point(f64::from(pixel.column), f64::from(pixel.row), f64::from(pixel.depth) / 1000.0);
+                let depth = f64::from(pixel.depth) / 1000.0;
+                let point = camera.point(f64::from(pixel.column), f64::from(pixel.row), depth);
                 let shares = shares.map(|share| share as f32 / full as f32);
-                for tree in self.forest.trees() {
-                    let number = leaf(tree);
-                    cast_votes(&mut self.votes, tree.leaf_content(number), &shares, &point);
+                for leaf in ends() {
+                    cast_votes(&mut self.votes, leaf, &shares, &point);
                 }
             }
         }
@@ -246,13 +257,7 @@ fn most(shares: &[u32; CLASSES]) -> (u8, u32) {
 
 /// Adds a leaf's votes to the lists of the joints that its pixel knows about.
 #[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for metres")]
-fn cast_votes(
-    votes: &mut [Vec<VotePoint>; VOTED],
-    leaf: Option<&super::tree::Leaf>,
-    shares: &[f32; CLASSES],
-    point: &Point,
-) {
-    let Some(leaf) = leaf else { return };
+fn cast_votes(votes: &mut [Vec<VotePoint>; VOTED], leaf: &Leaf, shares: &[f32; CLASSES], point: &Point) {
     for side in Side::BOTH {
         for joint in Joint::ALL {
             let index = vote_index(side, joint);

@@ -105,8 +105,9 @@ impl ProbeImage {
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the image and its border")]
     pub fn at(&self, column: f32, row: f32) -> u16 {
-        let column = column.floor().clamp(-1.0, self.width as f32) + 1.0;
-        let row = row.floor().clamp(-1.0, self.height as f32) + 1.0;
+        // Shifted by the border first: what is not negative is cut to a whole number by the cast alone, and cheaply.
+        let column = (column + 1.0).clamp(0.0, (self.width + 1) as f32);
+        let row = (row + 1.0).clamp(0.0, (self.height + 1) as f32);
         self.values.get(row as usize * self.stride() + column as usize).copied().unwrap_or(BACKGROUND)
     }
 
