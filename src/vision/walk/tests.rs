@@ -12,7 +12,7 @@ fn tree(random: &mut ChaCha8Rng) -> Tree {
         let children = u32::try_from(tree.nodes.len()).unwrap();
         let split = tree.nodes.len() < 2_000 && (at < 400 || random.random_bool(0.6));
         tree.nodes[at] = if split {
-            let offsets = [0; 4].map(|_| random.random_range(-24_000..=24_000));
+            let offsets = [0; 4].map(|_| random.random_range(-2_000..=2_000));
             Node { offsets, threshold: random.random_range(-1_500..1_500), next: children }
         } else {
             let leaf = Leaf { shares: [0; CLASSES], votes: [Vote { offset: [0; 3], deviation: NO_VOTE }; VOTED] };
