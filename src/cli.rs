@@ -27,6 +27,7 @@ mod shell;
 mod sim;
 mod sim_images;
 mod torture;
+mod train;
 mod watch;
 
 use clap::{Parser, Subcommand};
@@ -51,6 +52,7 @@ enum Command {
     Sim(sim::Arguments),
     Doctor(doctor::Arguments),
     Fit(fit::Arguments),
+    Train(train::Arguments),
     Reproduce(reproduce::Arguments),
     Torture(torture::Arguments),
     Bench(bench::Arguments),
@@ -92,6 +94,7 @@ fn run(line: CommandLine) -> Result<(), Failure> {
         Command::Sim(arguments) => sim::run(&arguments),
         Command::Doctor(arguments) => doctor::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Train(arguments) => train::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Torture(arguments) => torture::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

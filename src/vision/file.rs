@@ -87,6 +87,11 @@ impl Forest {
         Self { focal, description, trees }
     }
 
+    /// Adds a tree.
+    pub fn push(&mut self, tree: Tree) {
+        self.trees.push(tree);
+    }
+
     /// The forest as a file's bytes.
     ///
     /// # Errors
