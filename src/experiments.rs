@@ -10,6 +10,7 @@ pub mod findings;
 pub mod joints;
 pub mod mixtures;
 pub mod synthetic;
+pub mod table_3_2;
 pub mod table_4_1;
 pub mod table_4_2;
 pub mod torture;
@@ -30,6 +31,7 @@ pub struct Experiment {
 
 /// All experiments, in the order in which `all` runs them.
 pub const EXPERIMENTS: &[Experiment] = &[
+    Experiment { name: "table-3.2", title: "Table 3.2: body parts by number of images", run: table_3_2::run },
     Experiment { name: "table-4.1", title: "Table 4.1: optimisers on synthetic paths", run: table_4_1::run },
     Experiment { name: "figure-4.5", title: "Figure 4.5: examples of the iterations", run: figure_4_5::run },
     Experiment { name: "table-4.2", title: "Table 4.2: twelve simulated people", run: table_4_2::run },

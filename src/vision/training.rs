@@ -85,15 +85,16 @@ impl Settings {
     }
 }
 
-/// A subtree as it grows.
+/// A subtree as it grows; a split knows its leaf where the tree is to be cut.
 enum Grown {
     Leaf(Box<Leaf>),
-    Split(Split, Box<(Grown, Grown)>),
+    Split(Split, Option<Box<Leaf>>, Box<(Grown, Grown)>),
 }
 
 struct Grower<'a> {
     set: &'a TrainingSet,
     settings: &'a Settings,
+    cut: Option<usize>,
     progress: &'a (dyn Fn(f64) + Sync),
     done: AtomicUsize,
 }
@@ -103,14 +104,31 @@ struct Grower<'a> {
 /// # Errors
 /// Where a setting cannot be or there is nothing to learn from.
 pub fn train(set: &TrainingSet, settings: &Settings, progress: &(dyn Fn(f64) + Sync)) -> Result<Tree, TrainingError> {
+    Ok(flatten(&root(set, settings, None, progress)?, false))
+}
+
+/// Trains a tree and cuts a copy at a shallower depth: the tree that the same settings with that depth would have given.
+///
+/// # Errors
+/// As [`train`].
+pub fn train_with_cut(set: &TrainingSet, settings: &Settings, cut: usize) -> Result<(Tree, Tree), TrainingError> {
+    let root = root(set, settings, Some(cut), &|_| ())?;
+    Ok((flatten(&root, false), flatten(&root, true)))
+}
+
+fn root(
+    set: &TrainingSet,
+    settings: &Settings,
+    cut: Option<usize>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Grown, TrainingError> {
     settings.check()?;
     let mut samples = set.samples().to_vec();
     if samples.is_empty() {
         return Err(TrainingError::NoSamples);
     }
-    let grower = Grower { set, settings, progress, done: AtomicUsize::new(0) };
-    let root = grower.grow(&mut samples, 0, settings.seed);
-    Ok(flatten(root))
+    let grower = Grower { set, settings, cut, progress, done: AtomicUsize::new(0) };
+    Ok(grower.grow(&mut samples, 0, settings.seed))
 }
 
 impl Grower<'_> {
@@ -125,6 +143,7 @@ impl Grower<'_> {
         if middle == 0 || middle == samples.len() {
             return self.leaf(samples);
         }
+        let cut_leaf = (self.cut == Some(depth)).then(|| Box::new(self.content(samples)));
         let (left, right) = samples.split_at_mut(middle);
         let large = left.len().min(right.len()) > 200;
         let grow_left = |left: &mut [Sample]| self.grow(left, depth + 1, mix(seed, 1));
@@ -134,7 +153,7 @@ impl Grower<'_> {
         } else {
             (grow_left(left), grow_right(right))
         };
-        Grown::Split(split, Box::new(children))
+        Grown::Split(split, cut_leaf, Box::new(children))
     }
 
     /// Brings the left samples to the front, keeping the order on both sides, and counts them.
@@ -149,7 +168,11 @@ impl Grower<'_> {
     fn leaf(&self, samples: &[Sample]) -> Grown {
         let before = self.done.fetch_add(samples.len(), Ordering::Relaxed);
         (self.progress)((before + samples.len()) as f64 / self.set.samples().len() as f64);
-        Grown::Leaf(Box::new(Leaf { shares: shares(samples), votes: self.votes(samples) }))
+        Grown::Leaf(Box::new(self.content(samples)))
+    }
+
+    fn content(&self, samples: &[Sample]) -> Leaf {
+        Leaf { shares: shares(samples), votes: self.votes(samples) }
     }
 
     fn votes(&self, samples: &[Sample]) -> [Vote; VOTED] {
@@ -195,9 +218,10 @@ fn shares(samples: &[Sample]) -> [u8; CLASSES] {
     counts.map(|count| (f64::from(count) / total * 255.0).round() as u8)
 }
 
-/// Puts a tree into one list: level by level, both children of a split side by side.
+/// Puts a tree into one list: level by level, both children of a split side by side; with `cut`, no deeper than the splits
+/// that know their leaf.
 #[expect(clippy::cast_possible_truncation, reason = "fewer nodes than samples, and those are counted in 32 bits")]
-fn flatten(root: Grown) -> Tree {
+fn flatten(root: &Grown, cut: bool) -> Tree {
     let mut tree = Tree::default();
     let mut level = vec![root];
     let mut first_of_next = 1_u32;
@@ -205,18 +229,16 @@ fn flatten(root: Grown) -> Tree {
         let mut below = Vec::new();
         for grown in level {
             match grown {
-                Grown::Leaf(leaf) => {
-                    tree.nodes.push(Node { next: LEAF | tree.leaves.len() as u32, ..Node::default() });
-                    tree.leaves.push(*leaf);
-                }
-                Grown::Split(split, children) => {
+                Grown::Leaf(leaf) => end(&mut tree, leaf),
+                Grown::Split(_, Some(leaf), _) if cut => end(&mut tree, leaf),
+                Grown::Split(split, _, children) => {
                     tree.nodes.push(Node {
                         offsets: split.offsets,
                         threshold: split.threshold,
                         next: first_of_next + below.len() as u32,
                     });
-                    below.push(children.0);
-                    below.push(children.1);
+                    below.push(&children.0);
+                    below.push(&children.1);
                 }
             }
         }
@@ -224,6 +246,12 @@ fn flatten(root: Grown) -> Tree {
         level = below;
     }
     tree
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "fewer leaves than samples, and those are counted in 32 bits")]
+fn end(tree: &mut Tree, leaf: &Leaf) {
+    tree.nodes.push(Node { next: LEAF | tree.leaves.len() as u32, ..Node::default() });
+    tree.leaves.push(*leaf);
 }
 
 /// Mixes a word into a seed (`SplitMix64`'s finaliser).

@@ -82,3 +82,11 @@ fn a_joint_whose_place_is_unknown_gets_no_vote() {
     assert_eq!(leaf.votes[3].deviation, NO_VOTE);
     assert_ne!(leaf.votes[2].deviation, NO_VOTE);
 }
+
+#[test]
+fn a_cut_tree_is_the_one_that_would_have_been_trained_no_deeper() {
+    let set = set(6);
+    let (deep, cut) = train_with_cut(&set, &settings(), 2).unwrap();
+    assert_eq!(deep, train(&set, &settings(), &|_| ()).unwrap());
+    assert_eq!(cut, train(&set, &Settings { depth: 2, ..settings() }, &|_| ()).unwrap());
+}
