@@ -3,6 +3,7 @@
 //! The result depends on the images, the settings and the seed, not on the number of threads: each node draws its candidates
 //! from a seed made of the tree's seed and the node's path. Rayon's threads are the only ones; time is the caller's matter.
 
+mod batch;
 mod candidate;
 mod set;
 

@@ -3,6 +3,7 @@
 use super::super::part::CLASSES;
 use super::super::probe::{Offsets, gain};
 use super::super::tree::OFFSET_UNIT;
+use super::batch::{Features, Room};
 use super::set::Sample;
 use super::{Settings, TrainingSet, mix};
 use rand::{RngExt, SeedableRng};
@@ -38,8 +39,9 @@ struct Candidate {
     thresholds: [i16; LANES],
 }
 
-/// How many samples of each class fall between which thresholds, for each candidate.
-type Histogram = Vec<[[u32; CLASSES]; LANES]>;
+/// How many samples of each class fall between which thresholds: for each class, for each candidate. The samples of a node
+/// come in runs of one class, so that a run works on few and neighbouring counters.
+type Histogram = Vec<[u32; LANES]>;
 
 /// The split that gains most information; the first of equally good ones. `None` where none gains.
 pub(super) fn best_split(set: &TrainingSet, settings: &Settings, samples: &[Sample], seed: u64) -> Option<Split> {
@@ -51,8 +53,9 @@ pub(super) fn best_split(set: &TrainingSet, settings: &Settings, samples: &[Samp
         count(set, &candidates, samples)
     };
     let mut best: Option<(f64, Split)> = None;
-    for (candidate, buckets) in candidates.iter().zip(&histogram) {
-        let Some((found, threshold)) = best_threshold(candidate, buckets, settings.thresholds) else { continue };
+    for (index, candidate) in candidates.iter().enumerate() {
+        let counts = counts_of(&histogram, candidates.len(), index);
+        let Some((found, threshold)) = best_threshold(candidate, &counts, settings.thresholds) else { continue };
         if best.as_ref().is_none_or(|(most, _)| found > *most) {
             best = Some((found, Split { offsets: candidate.stored, threshold: i32::from(threshold) }));
         }
@@ -94,15 +97,19 @@ const fn narrow(response: i32) -> i16 {
 }
 
 fn count(set: &TrainingSet, candidates: &[Candidate], samples: &[Sample]) -> Histogram {
-    let mut histogram = vec![[[0; CLASSES]; LANES]; candidates.len()];
+    let mut histogram = vec![[0; LANES]; CLASSES * candidates.len()];
+    let mut features = Features::default();
+    candidates.iter().for_each(|candidate| features.push(&candidate.offsets));
+    let mut room = Room::default();
     for sample in samples {
         let Some((image, place, per_metre)) = set.view(sample) else { continue };
-        for (candidate, buckets) in candidates.iter().zip(&mut histogram) {
-            let response = narrow(image.response(place, per_metre, &candidate.offsets));
+        features.respond(image, place, per_metre, &mut room);
+        let first = usize::from(sample.label) * candidates.len();
+        let Some(counts) = histogram.get_mut(first..first + candidates.len()) else { continue };
+        for ((candidate, response), counts) in candidates.iter().zip(&room.responses).zip(counts) {
             // Thresholds up to the response: those splits put the sample to the right.
-            let passed: i16 = candidate.thresholds.iter().map(|threshold| i16::from(*threshold <= response)).sum();
-            let bucket = usize::from(passed.unsigned_abs());
-            if let Some(count) = buckets.get_mut(bucket).and_then(|bucket| bucket.get_mut(usize::from(sample.label))) {
+            let passed: i16 = candidate.thresholds.iter().map(|threshold| i16::from(threshold <= response)).sum();
+            if let Some(count) = counts.get_mut(usize::from(passed.cast_unsigned())) {
                 *count += 1;
             }
         }
@@ -111,10 +118,24 @@ fn count(set: &TrainingSet, candidates: &[Candidate], samples: &[Sample]) -> His
 }
 
 fn merge(mut into: Histogram, from: Histogram) -> Histogram {
-    for (into, from) in into.iter_mut().flatten().flatten().zip(from.into_iter().flatten().flatten()) {
+    for (into, from) in into.iter_mut().flatten().zip(from.into_iter().flatten()) {
         *into += from;
     }
     into
+}
+
+/// One candidate's counts, by threshold and class.
+fn counts_of(histogram: &[[u32; LANES]], candidates: usize, index: usize) -> [[u32; CLASSES]; LANES] {
+    let mut counts = [[0; CLASSES]; LANES];
+    for (class, of_class) in histogram.chunks(candidates).enumerate() {
+        let Some(buckets) = of_class.get(index) else { continue };
+        for (counts, count) in counts.iter_mut().zip(buckets) {
+            if let Some(slot) = counts.get_mut(class) {
+                *slot = *count;
+            }
+        }
+    }
+    counts
 }
 
 fn best_threshold(candidate: &Candidate, buckets: &[[u32; CLASSES]; LANES], thresholds: usize) -> Option<(f64, i16)> {
