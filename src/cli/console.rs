@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 ///
 /// The private parameters ~profile, ~strategy, ~seed, ~record and ~`dry_run` stand in for options that are not typed.
 #[derive(Clone, Debug, Default, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own on the command line")]
 pub(super) struct Arguments {
     /// The person: a name or a file.
     #[arg(long)]

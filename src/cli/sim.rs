@@ -153,10 +153,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..WorldSetup::default()
     };
     let world = World::new(&setup).map_err(Failure::configuration)?;
-    let seen: SeenArms = Arc::new(Mutex::new(world.person_arms()));
+    let seen_arms: SeenArms = Arc::new(Mutex::new(world.person_arms()));
     let relay = master.as_ref().map(|_| relay_log()).transpose().map_err(ros_failure)?;
-    let camera = HeadCamera { person: setup.person, seen: Arc::clone(&seen), intrinsics: Intrinsics::default(), seed };
-    let mut robot = SimNode::new(&node, Box::new(WorldOnTheWire { world, seen })).map_err(ros_failure)?;
+    let camera =
+        HeadCamera { person: setup.person, seen: Arc::clone(&seen_arms), intrinsics: Intrinsics::default(), seed };
+    let mut robot = SimNode::new(&node, Box::new(WorldOnTheWire { world, seen: seen_arms })).map_err(ros_failure)?;
     robot.add_camera(Box::new(camera)).map_err(ros_failure)?;
     let words = format!("simulated Baxter {} with seed {seed} on the master at {}", node.name(), node.master());
     Output::new(false).line(&words)?;
@@ -196,6 +197,7 @@ pub(super) fn ending_signals() -> Result<Arc<AtomicBool>, Failure> {
 }
 
 /// The exit code that fits what went wrong with ROS.
+#[expect(clippy::needless_pass_by_value, reason = "it stands in map_err, which gives the error away")]
 pub(super) fn ros_failure(error: RosError) -> Failure {
     match error {
         RosError::NoMaster { .. } => Failure::NoMaster(error.to_string()),

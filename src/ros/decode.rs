@@ -187,9 +187,10 @@ pub fn pose(message: &geometry_msgs::Pose) -> Pose {
     isometry([p.x, p.y, p.z], [q.x, q.y, q.z, q.w])
 }
 
-fn isometry([x, y, z]: [f64; 3], [i, j, k, w]: [f64; 4]) -> Isometry3<f64> {
-    let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
-    Isometry3::from_parts(Translation3::new(x, y, z), rotation)
+/// Metres, and a quaternion as messages order it: x, y, z, w.
+fn isometry(place: [f64; 3], quaternion: [f64; 4]) -> Isometry3<f64> {
+    let rotation = UnitQuaternion::new_normalize(Quaternion::from(quaternion));
+    Isometry3::from_parts(Translation3::from(place), rotation)
 }
 
 #[cfg(test)]

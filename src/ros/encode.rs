@@ -134,7 +134,7 @@ pub(super) fn diagnostics(stamp: Stamp, node: &str, reports: &[TopicReport]) -> 
         };
         let value = |key: &str, value: String| KeyValue { key: key.to_owned(), value };
         DiagnosticStatus {
-            level: i8::try_from(level).unwrap_or_default(),
+            level,
             name: format!("{}: {}", node.trim_start_matches('/'), report.topic),
             message: message.to_owned(),
             hardware_id: "baxter".to_owned(),

@@ -255,7 +255,9 @@ impl CommandTopics {
         let mut timeout = both("joint_command_timeout")?;
         for side in Side::BOTH {
             let latched: [&mut Publisher<std_msgs::Float64>; 2] = [speed_ratio.get_mut(side), timeout.get_mut(side)];
-            latched.into_iter().for_each(|publisher| publisher.set_latching(true));
+            for publisher in latched {
+                publisher.set_latching(true);
+            }
         }
         Ok(Self {
             joints: both("joint_command")?,

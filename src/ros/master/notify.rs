@@ -58,17 +58,16 @@ impl Notifier {
 
 fn work(uri: &str, notices: &Receiver<Notice>, queues: &Queues) {
     loop {
-        match notices.recv_timeout(IDLE) {
+        if let Ok(notice) = notices.recv_timeout(IDLE) {
             // A node that is gone cannot be told; the graph keeps it until it is cleaned up, as every master does.
-            Ok(notice) => drop(call(&notice.uri, notice.method, &notice.parameters, LIMIT)),
-            Err(_) => {
-                let mut queues = queues.lock().unwrap_or_else(PoisonError::into_inner);
-                // Under the lock nothing new can come: what is empty now stays empty.
-                if notices.is_empty() {
-                    queues.remove(uri);
-                    return;
-                }
-            }
+            drop(call(&notice.uri, notice.method, &notice.parameters, LIMIT));
+            continue;
+        }
+        let mut queues = queues.lock().unwrap_or_else(PoisonError::into_inner);
+        // Under the lock nothing new can come: what is empty now stays empty.
+        if notices.is_empty() {
+            queues.remove(uri);
+            return;
         }
     }
 }
