@@ -1,7 +1,7 @@
 //! The forest that valet brings along: trained on simulated people of many sizes, shapes, clothes and postures, so that a new
 //! person needs neither coloured clothes nor training.
 //!
-//! `valet train --generic` made it; `docs/results.md` says with which numbers and how well it does.
+//! It was made with the training of `valet train --generic`; `docs/results.md` says with which numbers and how well it does.
 
 use super::file::FileError;
 use super::tree::Forest;
