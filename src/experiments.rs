@@ -38,10 +38,16 @@ pub const EXPERIMENTS: &[Experiment] = &[
     Experiment { name: "figure-4.6", title: "Figure 4.6: energy by iteration", run: table_4_2::energy_by_iteration },
     Experiment {
         name: "figure-4.7",
-        title: "Figure 4.7: resistances by iteration",
-        run: table_4_2::contacts_by_iteration,
+        title: "Figure 4.7: execution time by iteration",
+        run: table_4_2::duration_by_iteration,
     },
+    Experiment { name: "figures-4.9", title: "Figures 4.9 to 4.15: a worked example", run: table_4_2::worked_example },
     Experiment { name: "figures-5", title: "Figures 5.2 to 5.7: four scenes", run: chapter_5::figures },
+    Experiment {
+        name: "figures-5-real",
+        title: "Figures 5.8 to 5.10: three kinds of movement limits",
+        run: table_4_2::figures_5_real,
+    },
     Experiment { name: "table-5", title: "Chapter 5 on 200 scenes", run: chapter_5::table },
     Experiment { name: "whole-arm", title: "One mixture for the whole arm", run: whole_arm::run },
     Experiment { name: "joints", title: "Joints of simulated people nobody has seen", run: joints::run },

@@ -6,6 +6,7 @@ use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::recording::{RecordArguments, warn};
+use super::sim::GarmentModel;
 use crate::config::{LoadedProfile, Places, Settings};
 use crate::headless::{Report, ScriptedOperator, TrialResult, VirtualTrial};
 use crate::sim::world::WorldSetup;
@@ -38,6 +39,9 @@ pub(super) struct Arguments {
     /// The strategy that the trial begins with.
     #[arg(long)]
     pub(super) strategy: Option<String>,
+    /// The model of the garment.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) garment: GarmentModel,
     /// How many trials to run, with consecutive seeds.
     #[arg(long, default_value_t = 1)]
     pub(super) trials: u32,
@@ -64,6 +68,7 @@ impl Default for Arguments {
             seed: 1,
             profile: None,
             strategy: None,
+            garment: GarmentModel::default(),
             trials: 1,
             json: false,
             record: RecordArguments::default(),
@@ -102,6 +107,7 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
         seed,
         person: profile.simulated.clone().unwrap_or_default(),
         garment: profile.garment(None).cloned().unwrap_or_default(),
+        backend: arguments.garment.into(),
         ..WorldSetup::default()
     };
     output.line(format!("seed {seed}, strategy {strategy}"))?;

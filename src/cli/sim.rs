@@ -15,7 +15,7 @@ use crate::ros::simulation::{DepthPicture, Senses, SimNode, SimulatedCamera, Sim
 use crate::ros::{Node, RosError, environment, leave};
 use crate::sim::camera;
 use crate::sim::person::{ArmPoints, SimulatedPerson};
-use crate::sim::world::{World, WorldSetup};
+use crate::sim::world::{Backend, World, WorldSetup};
 use crate::snapshot::Level;
 use crate::time::Stamp;
 use crate::vision::Intrinsics;
@@ -39,6 +39,35 @@ pub(super) enum MasterChoice {
     Embedded,
 }
 
+/// Which model of the garment is simulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum GarmentModel {
+    /// A tube round the movement that the person likes best: fast, smooth, calibrated to the thesis' table 4.2.
+    #[default]
+    Reduced,
+    /// An armhole of cloth round a moving arm: believable, a core's work of its own.
+    Cloth,
+}
+
+impl GarmentModel {
+    /// As it is typed.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Reduced => "reduced",
+            Self::Cloth => "cloth",
+        }
+    }
+}
+
+impl From<GarmentModel> for Backend {
+    fn from(model: GarmentModel) -> Self {
+        match model {
+            GarmentModel::Reduced => Self::Reduced,
+            GarmentModel::Cloth => Self::Cloth,
+        }
+    }
+}
+
 /// The simulated Baxter, person and camera as a ROS node.
 ///
 /// The private parameters ~profile and ~seed stand in for options that are not typed.
@@ -56,6 +85,9 @@ pub(super) struct Arguments {
     /// Seed of everything random [default: 1].
     #[arg(long)]
     pub(super) seed: Option<u64>,
+    /// The model of the garment.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) garment: GarmentModel,
     /// Instead of a robot: write depth images of simulated people with their truth into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) images: Option<PathBuf>,
@@ -150,6 +182,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed,
         person: person.simulated.clone().unwrap_or_default(),
         garment: person.garment(None).cloned().unwrap_or_default(),
+        backend: arguments.garment.into(),
         ..WorldSetup::default()
     };
     let world = World::new(&setup).map_err(Failure::configuration)?;

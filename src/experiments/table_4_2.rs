@@ -5,10 +5,14 @@
 
 mod cohort;
 mod dresser;
+mod example;
+mod limits;
 mod present;
 mod run;
 
 pub use cohort::{CohortError, EXPERIMENTS, Participant, ThesisRow, cohort};
-pub use dresser::{DressingError, DressingRecord, PLANNING_SECONDS, PassRecord, dress};
-pub use present::{contacts_by_iteration, energy_by_iteration, run};
+pub use dresser::{ContactRecord, DressingError, DressingRecord, PLANNING_SECONDS, PassRecord, dress, dress_with};
+pub use example::worked_example;
+pub use limits::figures_5_real;
+pub use present::{duration_by_iteration, energy_by_iteration, run};
 pub use run::{CohortRow, SERIES, TableError, experiments, table};

@@ -6,6 +6,8 @@
 mod arm;
 mod body;
 mod exercise;
+mod impairment;
+mod movement;
 mod reaction;
 
 #[cfg(test)]
@@ -13,6 +15,8 @@ pub(super) use arm::point_along;
 pub use arm::{ArmAngles, ArmSizes, SimulatedArm};
 pub use body::{BodySizes, Sex};
 pub use exercise::Seen;
+pub use impairment::Impairment;
+pub use movement::{Movement, MovementKind};
 pub use reaction::Response;
 pub(super) use reaction::{Pull, Reaction};
 

@@ -3,7 +3,7 @@
 //! Cohorts of thousands of trials need no inverse kinematics: the gripper is exactly where it is told to be. It never
 //! plans; whoever uses it moves it along a path at a speed that the robot could reach.
 
-use super::garment::{Garment, Holder, ReducedGarment};
+use super::garment::{Garment, Holder};
 use super::person::{ArmPoints, Reaction};
 use super::random::{Purpose, Random};
 use super::world::{SimError, WorldSetup};
@@ -19,7 +19,7 @@ pub const BEAT_SECONDS: f64 = 0.01;
 #[derive(Debug)]
 pub struct Rig {
     side: Side,
-    garment: ReducedGarment,
+    garment: Box<dyn Garment>,
     arms: PerSide<ArmPoints>,
     reactions: PerSide<Reaction>,
     sense: WrenchSense,
@@ -39,12 +39,12 @@ impl Rig {
         let purpose = |side| if side == Side::Left { Purpose::LeftArm } else { Purpose::RightArm };
         let reactions = PerSide::from_fn(|side| {
             let random = Random::new(setup.seed, purpose(side));
-            Reaction::new(setup.person.arm(side).response, setup.preferred_path(side), random)
+            Reaction::of(&setup.person.arm(side), setup.preferred_path(side), random)
         });
         let waiting = waiting_place(&arms.get(side).shoulder);
         Ok(Self {
             side,
-            garment: ReducedGarment::new(setup.garment.clone()),
+            garment: setup.garment_model(),
             tip: arms.get(side).hand,
             arms,
             reactions,
@@ -67,7 +67,12 @@ impl Rig {
         (self.tip, self.velocity) = (tip, velocity);
         let own = Holder { tip, velocity };
         let holders = PerSide::from_fn(|side| if side == self.side { own } else { self.other });
-        let forces = self.garment.step(BEAT_SECONDS, &holders, &self.arms, &mut self.reactions);
+        let arms = PerSide::from_fn(|side| {
+            let mut arm = *self.arms.get(side);
+            arm.elbow += self.reactions.get(side).displacement();
+            arm
+        });
+        let forces = self.garment.step(BEAT_SECONDS, &holders, &arms, &mut self.reactions);
         self.sense.report(forces.get(self.side), &tip, &acceleration, BEAT_SECONDS)
     }
 }

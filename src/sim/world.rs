@@ -7,7 +7,7 @@ pub use setup::{Backend, SimError, WorldSetup};
 
 use super::baxter::{SimulatedLimb, Switch, UNTUCKED_LEFT, UNTUCKED_RIGHT};
 use super::faults::{ActiveFaults, FaultPlan};
-use super::garment::{ClothGarment, Garment, Holder, ReducedGarment, Wearing};
+use super::garment::{Garment, Holder, Wearing};
 use super::person::{Reaction, SimulatedPerson};
 use super::random::{Purpose, Random};
 use super::wrench::WrenchSense;
@@ -108,15 +108,12 @@ impl World {
         });
         let reactions = PerSide::from_fn(|side| {
             let purpose = if side == Side::Left { Purpose::LeftArm } else { Purpose::RightArm };
-            Reaction::new(setup.person.arm(side).response, setup.preferred_path(side), Random::new(seed, purpose))
+            Reaction::of(&setup.person.arm(side), setup.preferred_path(side), Random::new(seed, purpose))
         });
         Ok(Self {
             arms,
             switch: Switch::default(),
-            garment: match setup.backend {
-                Backend::Reduced => Box::new(ReducedGarment::new(setup.garment.clone())),
-                Backend::Cloth => Box::new(ClothGarment::new(setup.garment.clone(), setup.person.body.arm_sizes())),
-            },
+            garment: setup.garment_model(),
             person: setup.person.clone(),
             reactions,
             camera: Camera::new(setup.pose_noise_metres, Random::new(seed, Purpose::Camera)),

@@ -59,6 +59,7 @@ fn start_anew() -> Result<(), Failure> {
 fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failure> {
     let typed = ["sim", "--master", "embedded", "--port"].map(String::from).into_iter();
     let typed = typed.chain([port.to_string(), "--seed".into(), arguments.seed.to_string()]);
+    let typed = typed.chain(["--garment".to_owned(), arguments.garment.name().to_owned()]);
     let profile = arguments.profile.iter().flat_map(|name| ["--profile".to_owned(), name.clone()]);
     let mut command = environment::this_program(typed.chain(profile), port).map_err(Failure::fault)?;
     // The screen belongs to the console alone.

@@ -5,10 +5,13 @@
 
 use crate::body::Side;
 use crate::geometry::{Point, Pose, Vector};
+use crate::modelling::ArmSpace;
 use crate::sensing::{Detection, ForceWindow, SensingError, WindowForm, WindowSettings, WrenchConversion};
 use crate::sim::rig::{BEAT_SECONDS, Rig};
 use crate::sim::{SimError, WorldSetup};
-use crate::strategy::{ArmContext, Contact, IterationSummary, StrategyError, StrategyKind, StrategySettings, build};
+use crate::strategy::{
+    ArmContext, Contact, IterationSummary, StrategyError, StrategyKind, StrategySettings, WaypointChange, build,
+};
 use crate::time::Stamp;
 use thiserror::Error;
 
@@ -39,11 +42,24 @@ pub enum DressingError {
     Strategy(#[from] StrategyError),
 }
 
+/// One resistance and the strategy's answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactRecord {
+    /// Where the gripper stood, in metres in `base`.
+    pub position: Point,
+    /// Which way-points moved.
+    pub changes: Vec<WaypointChange>,
+}
+
 /// One pass of the garment along the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassRecord {
     /// What the strategy says of it.
     pub summary: IterationSummary,
+    /// The path that was planned at its beginning, in metres in `base`.
+    pub planned: Vec<Point>,
+    /// Its resistances in order.
+    pub contacts: Vec<ContactRecord>,
     /// Seconds from the first motion of the pass to its end.
     pub motion_seconds: f64,
     /// The gripper's places by beat, in metres in `base`.
@@ -57,6 +73,14 @@ pub struct PassRecord {
 pub struct DressingRecord {
     /// The passes in order.
     pub passes: Vec<PassRecord>,
+}
+
+impl PassRecord {
+    /// Seconds that the pass took, with the planning time of the thesis' robot for each resistance.
+    #[must_use]
+    pub fn duration_seconds(&self) -> f64 {
+        self.motion_seconds + PLANNING_SECONDS * f64::from(self.summary.contacts)
+    }
 }
 
 impl DressingRecord {
@@ -87,8 +111,7 @@ impl DressingRecord {
     /// Seconds that the passes took, with the planning time of the thesis' robot for each resistance.
     #[must_use]
     pub fn duration_seconds(&self) -> f64 {
-        let motion: f64 = self.passes.iter().map(|pass| pass.motion_seconds).sum();
-        motion + PLANNING_SECONDS * f64::from(self.resistances())
+        self.passes.iter().map(PassRecord::duration_seconds).sum()
     }
 }
 
@@ -97,15 +120,34 @@ impl DressingRecord {
 /// # Errors
 /// Where the person, the garment or the settings cannot be.
 pub fn dress(setup: &WorldSetup, side: Side) -> Result<DressingRecord, DressingError> {
+    dress_with(setup, side, StrategyKind::Force, None)
+}
+
+/// Dresses one arm with a strategy. With a movement space the initial path is where its joints are most often, and the
+/// lengths of the arm are kept (thesis section 5.2.2); without one it is where hand, elbow and shoulder are.
+///
+/// # Errors
+/// Where the person, the garment or the settings cannot be, or the strategy needs a movement space.
+pub fn dress_with(
+    setup: &WorldSetup,
+    side: Side,
+    kind: StrategyKind,
+    space: Option<&ArmSpace>,
+) -> Result<DressingRecord, DressingError> {
     let rig = Rig::new(setup, side)?;
-    let context = ArmContext { initial: rig.dressed(), space: None, seed: setup.seed };
-    let mut strategy = build(StrategyKind::Force, &StrategySettings::default(), &context)?;
+    let [hand, elbow, shoulder] = rig.dressed();
+    let lengths = [(elbow - hand).norm(), (shoulder - elbow).norm()];
+    let initial = space.map_or([hand, elbow, shoulder], |space| space.initial_path(lengths));
+    let context = ArmContext { initial, space: space.cloned(), seed: setup.seed };
+    let mut strategy = build(kind, &StrategySettings::default(), &context)?;
     let window = ForceWindow::new(WindowSettings { form: WindowForm::Vector, ..WindowSettings::default() })?;
     let mut gripper = Gripper::new(rig, window);
+    let [start, ..] = initial;
+    gripper.go(start, 0.0, false);
     let mut record = DressingRecord { passes: Vec::new() };
     loop {
         strategy.begin()?;
-        gripper.begin_pass();
+        gripper.begin_pass(strategy.path().to_vec());
         let mut corners = vec![gripper.at];
         while let Some(goal) = strategy.goal() {
             match gripper.go(goal, LEAST_SECONDS, true) {
@@ -114,6 +156,7 @@ pub fn dress(setup: &WorldSetup, side: Side) -> Result<DressingRecord, DressingE
                     let contact = Contact { position: gripper.at, resistance: found.resistance };
                     corners.push(gripper.at);
                     let reaction = strategy.resisted(&contact);
+                    gripper.contacts.push(ContactRecord { position: contact.position, changes: reaction.changes });
                     gripper.go(reaction.move_to, 0.0, false);
                 }
             }
@@ -140,6 +183,8 @@ struct Gripper {
     beat: u64,
     at: Point,
     pass_began: u64,
+    planned: Vec<Point>,
+    contacts: Vec<ContactRecord>,
     travelled: Vec<Point>,
     statistic: Vec<Option<f64>>,
 }
@@ -148,17 +193,31 @@ impl Gripper {
     fn new(rig: Rig, window: ForceWindow) -> Self {
         let [at, ..] = rig.dressed();
         let conversion = WrenchConversion::default();
-        Self { rig, window, conversion, beat: 0, at, pass_began: 0, travelled: Vec::new(), statistic: Vec::new() }
+        Self {
+            rig,
+            window,
+            conversion,
+            beat: 0,
+            at,
+            pass_began: 0,
+            planned: Vec::new(),
+            contacts: Vec::new(),
+            travelled: Vec::new(),
+            statistic: Vec::new(),
+        }
     }
 
-    fn begin_pass(&mut self) {
+    fn begin_pass(&mut self, planned: Vec<Point>) {
         self.pass_began = self.beat;
+        self.planned = planned;
         (self.travelled, self.statistic) = (Vec::new(), Vec::new());
     }
 
     fn end_pass(&mut self, summary: IterationSummary) -> PassRecord {
         PassRecord {
             summary,
+            planned: std::mem::take(&mut self.planned),
+            contacts: std::mem::take(&mut self.contacts),
             motion_seconds: (self.beat - self.pass_began) as f64 * BEAT_SECONDS,
             travelled: std::mem::take(&mut self.travelled),
             statistic: std::mem::take(&mut self.statistic),

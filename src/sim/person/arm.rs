@@ -1,6 +1,6 @@
 //! An arm: three angles of the shoulder, one of the elbow, the wrist kept straight.
 
-use super::{ArmPoints, PersonError, Response};
+use super::{ArmPoints, Impairment, Movement, PersonError, Response};
 use crate::body::Side;
 use crate::geometry::{Point, Vector, polyline_length};
 use nalgebra::{Rotation3, Unit};
@@ -109,8 +109,12 @@ pub struct SimulatedArm {
     /// How far the path that the person likes best lies from the straight one, in metres in the middle of the arm:
     /// forward, outward (away from the body's middle), up.
     pub preferred_offset_metres: [f64; 3],
+    /// In which way the person moves the arm easily.
+    pub movement: Movement,
     /// How the person reacts.
     pub response: Response,
+    /// What is wrong with the arm.
+    pub impairments: Vec<Impairment>,
 }
 
 impl Default for SimulatedArm {
@@ -118,7 +122,9 @@ impl Default for SimulatedArm {
         Self {
             posture: ArmAngles::default(),
             preferred_offset_metres: [-0.055, 0.02, 0.04],
+            movement: Movement::default(),
             response: Response::default(),
+            impairments: Vec::new(),
         }
     }
 }
@@ -144,6 +150,10 @@ impl SimulatedArm {
         self.posture.check(&format!("{key}.posture"))?;
         for (name, value) in ["forward", "outward", "up"].into_iter().zip(self.preferred_offset_metres) {
             PersonError::range(format!("{key}.preferred_offset_metres, {name}"), value, (-0.2, 0.2))?;
+        }
+        self.movement.check(&format!("{key}.movement"))?;
+        for (index, impairment) in self.impairments.iter().enumerate() {
+            impairment.check(&format!("{key}.impairments[{index}]"))?;
         }
         self.response.check(&format!("{key}.response"))
     }

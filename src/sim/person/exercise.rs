@@ -1,21 +1,18 @@
 //! A person who moves the arms as far as they like while nobody dresses them: what a movement space is fitted to.
 //!
-//! Thesis section 3.3 records a person's movement before the first trial. Here the shoulder's and the elbow's angles swing
-//! about the posture in which the person waits for the sleeve, each at a pace of its own, so that the whole range is met.
+//! Thesis section 3.3 records a person's movement before the first trial. Here the arm moves about the posture in which the
+//! person waits for the sleeve, as the movement class of the profile says (`movement`).
 
 use super::super::random::{Purpose, Random};
-use super::{ArmAngles, SimulatedPerson};
+use super::SimulatedPerson;
+use super::impairment::range_share;
 use crate::body::{PerSide, Side};
 use crate::geometry::Vector;
 
 /// Poses a second, as a depth camera brings them.
 const RATE_HZ: f64 = 30.0;
-/// How many poses: the person moves for half a minute (ours: each angle swings at least five times).
+/// How many poses: the person moves for half a minute (ours: each movement comes at least three times).
 const BEATS: u32 = 900;
-/// Half of each swing in degrees: elevation, plane, rotation, elbow (ours: a movement that costs no effort).
-const SWING_DEGREES: [f64; 4] = [8.0, 8.0, 10.0, 10.0];
-/// Swings a second of each angle: their ratios are no fractions of small numbers, so no swing repeats another.
-const PACE_HZ: [f64; 4] = [0.171, 0.233, 0.277, 0.361];
 /// How far the trunk sways, as a standard deviation in metres (ours).
 const SWAY_METRES: f64 = 0.006;
 /// Error of a joint that a camera sees, as a standard deviation in metres along each axis (ours, from the joints found in
@@ -33,12 +30,15 @@ impl SimulatedPerson {
         PerSide::from_fn(|side| {
             let purpose = if side == Side::Left { Purpose::LeftArm } else { Purpose::RightArm };
             let mut random = Random::new(seed, purpose);
-            let phases = SWING_DEGREES.map(|_| random.between(0.0, std::f64::consts::TAU));
-            let posture = self.arm(side).posture;
+            let phases = [(); 4].map(|()| random.between(0.0, std::f64::consts::TAU));
+            let arm = self.arm(side);
+            let mut movement = arm.movement;
+            movement.flexibility_share *= range_share(&arm.impairments);
             let mut places_seen = Seen::default();
             for beat in 0..BEATS {
                 let sway = random.normal_vector(SWAY_METRES);
-                let angles = swung(&posture, &phases, f64::from(beat) / RATE_HZ);
+                let seconds = f64::from(beat) / RATE_HZ;
+                let angles = movement.angles(&arm.posture, side, &sizes, &phases, seconds);
                 let places = angles.points(side, &(self.shoulder(side) + sway), &sizes).dressed();
                 for (list, place) in places_seen.iter_mut().zip(places) {
                     list.push(place.coords + random.normal_vector(SEEN_METRES));
@@ -46,20 +46,6 @@ impl SimulatedPerson {
             }
             places_seen
         })
-    }
-}
-
-/// The posture's angles at a moment of the exercise, kept within what people reach.
-fn swung(posture: &ArmAngles, phases: &[f64; 4], seconds: f64) -> ArmAngles {
-    let swing = |degrees: f64, pace: f64, phase: f64| degrees * (std::f64::consts::TAU * pace * seconds + phase).sin();
-    let mut swings = SWING_DEGREES.into_iter().zip(PACE_HZ).zip(phases);
-    let [elevation, plane, rotation, elbow] =
-        [(); 4].map(|()| swings.next().map_or(0.0, |((degrees, pace), phase)| swing(degrees, pace, *phase)));
-    ArmAngles {
-        elevation_degrees: (posture.elevation_degrees + elevation).clamp(0.0, 180.0),
-        plane_degrees: (posture.plane_degrees + plane).clamp(-90.0, 135.0),
-        rotation_degrees: (posture.rotation_degrees + rotation).clamp(-104.0, 104.0),
-        elbow_degrees: (posture.elbow_degrees + elbow).clamp(0.0, 150.0),
     }
 }
 

@@ -2,7 +2,8 @@
 //! and keeps a share of that for the next iteration.
 
 use super::super::random::Random;
-use super::PersonError;
+use super::impairment::Impaired;
+use super::{PersonError, SimulatedArm};
 use crate::geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -107,9 +108,17 @@ pub(in crate::sim) struct Reaction {
     still_for: f64,
     noticed: bool,
     reflex: f64,
+    impaired: Impaired,
 }
 
 impl Reaction {
+    /// An arm of a person with its impairments, and its preferred path (metres in `base`), at the start of an experiment.
+    pub(in crate::sim) fn of(arm: &SimulatedArm, undisturbed: Vec<Point>, random: Random) -> Self {
+        let impaired = Impaired::new(&arm.impairments);
+        let response = impaired.response(arm.response, &arm.posture);
+        Self { impaired, ..Self::new(response, undisturbed, random) }
+    }
+
     /// An arm with its preferred path (metres in `base`), at the start of an experiment.
     pub(in crate::sim) fn new(response: Response, undisturbed: Vec<Point>, random: Random) -> Self {
         let mut reaction = Self {
@@ -126,6 +135,7 @@ impl Reaction {
             still_for: 0.0,
             noticed: false,
             reflex: 0.0,
+            impaired: Impaired::default(),
         };
         reaction.draw_jitter();
         reaction
@@ -142,7 +152,7 @@ impl Reaction {
 
     /// How far the middle of the arm has moved from its posture, in metres.
     pub(in crate::sim) fn displacement(&self) -> Vector {
-        self.kept + self.given + self.withdrawn
+        self.kept + self.given + self.withdrawn + self.impaired.displacement()
     }
 
     /// The iteration is over: a share of what was given stays, and the next one is not quite the same.
@@ -150,6 +160,7 @@ impl Reaction {
         self.kept += self.given * self.response.learn_share;
         self.given = Vector::zeros();
         (self.pulled_for, self.still_for, self.reflex, self.noticed) = (0.0, 0.0, 0.0, false);
+        self.impaired.end_pass(&mut self.random);
         self.draw_jitter();
     }
 
@@ -161,6 +172,10 @@ impl Reaction {
     /// The force of the stiffening arm on the gripper in newtons, after `seconds` under a pull.
     pub(in crate::sim) fn react(&mut self, pull: &Pull, seconds: f64) -> Vector {
         self.withdraw(seconds);
+        if self.impaired.moves() {
+            self.impaired.advance(seconds);
+            self.bend_path();
+        }
         let excess = pull.excess.norm();
         self.still_for = if pull.speed < STILL { self.still_for + seconds } else { 0.0 };
         if self.still_for == 0.0 {
@@ -171,6 +186,7 @@ impl Reaction {
             if self.pulled_for > self.response.reaction_seconds {
                 let risen = self.reflex + self.response.reflex_rate_newtons_per_second * seconds;
                 self.reflex = risen.min(REFLEX_CEILING);
+                self.impaired.feel();
             }
         } else {
             self.pulled_for = 0.0;
@@ -178,10 +194,12 @@ impl Reaction {
         }
         if self.still_for > NOTICE && !self.noticed && excess > 0.0 {
             self.noticed = true;
-            self.given -= pull.excess * self.response.yield_share;
+            let given = self.given - pull.excess * self.response.yield_share;
+            self.given = given.cap_magnitude(self.impaired.gives_way_metres());
             self.bend_path();
         }
-        if excess > 0.0 { pull.excess * (self.reflex / excess) } else { Vector::zeros() }
+        let resistance = self.reflex + self.impaired.tone(pull.speed);
+        if excess > 0.0 { pull.excess * (resistance / excess) } else { Vector::zeros() }
     }
 
     fn withdraw(&mut self, seconds: f64) {

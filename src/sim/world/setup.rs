@@ -2,7 +2,7 @@
 
 use super::super::baxter::ArmDynamics;
 use super::super::faults::FaultPlan;
-use super::super::garment::{GarmentError, GarmentSizes};
+use super::super::garment::{ClothGarment, Garment, GarmentError, GarmentSizes, ReducedGarment};
 use super::super::person::{PersonError, SimulatedPerson};
 use super::super::wrench::WrenchErrors;
 use crate::body::{PerSide, Side};
@@ -112,6 +112,15 @@ impl WorldSetup {
             }
         }
         Ok(())
+    }
+
+    /// The garment in both grippers, on nobody, of the chosen model.
+    pub(in crate::sim) fn garment_model(&self) -> Box<dyn Garment> {
+        let sizes = self.garment.clone();
+        match self.backend {
+            Backend::Reduced => Box::new(ReducedGarment::new(sizes)),
+            Backend::Cloth => Box::new(ClothGarment::new(sizes, self.person.body.arm_sizes())),
+        }
     }
 
     /// The path that the person likes best in this experiment, metres in `base`.

@@ -1,0 +1,73 @@
+//! How many times faster than real time the simulated people are: `cargo bench --bench sim`.
+//!
+//! Each figure is one pass of a garment along an arm (3 s a limb and more at 0.1 m/s), stepped beat by beat on one core; a
+//! criterion time of t for a pass of s seconds is a real-time factor of s / t, which is printed beside it.
+#![allow(missing_docs, reason = "criterion's macros make public items without documentation")]
+#![allow(clippy::unwrap_used, reason = "a bench that cannot be set up has nothing to measure")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+use std::time::Instant;
+use valet::body::Side;
+use valet::geometry::{Point, Vector};
+use valet::sim::WorldSetup;
+use valet::sim::rig::{BEAT_SECONDS, Rig};
+use valet::sim::world::Backend;
+use valet::time::Stamp;
+
+/// The gripper's speed in metres per second (thesis section 3.5).
+const SPEED: f64 = 0.1;
+
+fn setup(backend: Backend) -> WorldSetup {
+    WorldSetup { backend, ..WorldSetup::default() }
+}
+
+/// The gripper's places beat by beat, from the hand over the elbow to the shoulder.
+fn places(rig: &Rig) -> Vec<Point> {
+    let [hand, elbow, shoulder] = rig.dressed();
+    let mut places = vec![hand];
+    for (from, to) in [(hand, elbow), (elbow, shoulder)] {
+        let way: Vector = to - from;
+        let beats = (way.norm() / (SPEED * BEAT_SECONDS)).ceil() as u32;
+        places.extend((1..=beats).map(|beat| from + way * (f64::from(beat) / f64::from(beats))));
+    }
+    places
+}
+
+/// One pass; returns its virtual time in seconds.
+fn pass(backend: Backend) -> f64 {
+    let mut rig = Rig::new(&setup(backend), Side::Right).unwrap();
+    let places = places(&rig);
+    for place in &places {
+        black_box(rig.place(*place));
+    }
+    places.len() as f64 * BEAT_SECONDS
+}
+
+/// Prints the real-time factor of some passes at a stretch.
+fn factor(name: &str, backend: Backend, passes: u32) {
+    let began = Instant::now();
+    let seconds: f64 = (0..passes).map(|_| pass(backend)).sum();
+    println!("{name}: {:.0} times real time on one core", seconds / began.elapsed().as_secs_f64());
+}
+
+fn sim(criterion: &mut Criterion) {
+    factor("reduced garment", Backend::Reduced, 200);
+    factor("garment of cloth, 5 ms steps", Backend::Cloth, 4);
+    criterion.bench_function("a pass, reduced garment", |bencher| bencher.iter(|| pass(Backend::Reduced)));
+    let mut slow = criterion.benchmark_group("cloth");
+    slow.sample_size(10);
+    slow.bench_function("a pass, garment of cloth", |bencher| bencher.iter(|| pass(Backend::Cloth)));
+    slow.finish();
+    criterion.bench_function("a second of the whole world, reduced garment", |bencher| {
+        let mut world = valet::sim::World::new(&setup(Backend::Reduced)).unwrap();
+        let mut beats = 0_u64;
+        bencher.iter(|| {
+            beats += 100;
+            black_box(world.step(Stamp::from_nanoseconds(beats * 10_000_000)))
+        });
+    });
+}
+
+criterion_group!(benches, sim);
+criterion_main!(benches);
