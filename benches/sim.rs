@@ -28,8 +28,11 @@ fn places(rig: &Rig) -> Vec<Point> {
     let mut places = vec![hand];
     for (from, to) in [(hand, elbow), (elbow, shoulder)] {
         let way: Vector = to - from;
-        let beats = (way.norm() / (SPEED * BEAT_SECONDS)).ceil() as u32;
-        places.extend((1..=beats).map(|beat| from + way * (f64::from(beat) / f64::from(beats))));
+        let mut done = 0.0;
+        while done < way.norm() {
+            done = (done + SPEED * BEAT_SECONDS).min(way.norm());
+            places.push(from + way.normalize() * done);
+        }
     }
     places
 }

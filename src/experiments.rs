@@ -7,6 +7,7 @@ pub mod chapter_5;
 pub mod detectors;
 pub mod figure_4_5;
 pub mod findings;
+pub mod garments;
 pub mod joints;
 pub mod mixtures;
 pub mod synthetic;
@@ -52,5 +53,6 @@ pub const EXPERIMENTS: &[Experiment] = &[
     Experiment { name: "whole-arm", title: "One mixture for the whole arm", run: whole_arm::run },
     Experiment { name: "joints", title: "Joints of simulated people nobody has seen", run: joints::run },
     Experiment { name: "mixtures", title: "How many Gaussians the fit finds", run: mixtures::run },
+    Experiment { name: "garments", title: "Both models of the garment against each other", run: garments::run },
     Experiment { name: "detectors", title: "Detectors of resistance on measured pulls", run: detectors::run },
 ];

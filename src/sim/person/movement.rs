@@ -7,7 +7,7 @@
 use super::{ArmAngles, ArmSizes, PersonError};
 use crate::body::Side;
 use crate::geometry::{Point, Vector};
-use nalgebra::{Matrix3, Matrix3x4, Vector4};
+use nalgebra::{Matrix3, Matrix3x4};
 use serde::{Deserialize, Serialize};
 
 /// How far the hand goes to either side along a direction, in metres (ours: a comfortable movement of a seated person).
@@ -25,6 +25,8 @@ const PACE_HZ: [f64; 4] = [0.171, 0.233, 0.277, 0.361];
 /// Steps of the search for the angles that bring the hand to a place, and its damping in metres.
 const STEPS: usize = 6;
 const DAMPING: f64 = 0.02;
+/// Small turns (degrees) that show how each angle moves the hand.
+const PROBES: [[f64; 4]; 4] = [[0.1, 0.0, 0.0, 0.0], [0.0, 0.1, 0.0, 0.0], [0.0, 0.0, -0.1, 0.0], [0.0, 0.0, 0.0, 0.1]];
 
 /// In which directions an arm moves easily.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,14 +82,15 @@ impl Movement {
 
     /// Where the hand is in relation to its place in the posture, in metres; `None` where the class does not say.
     fn hand_offset(&self, phases: &[f64; 4], seconds: f64) -> Option<Vector> {
-        let stroke = STROKE_METRES * self.flexibility_share * stroke_at(seconds + phases[0]);
+        let [phase, ..] = *phases;
+        let stroke = STROKE_METRES * self.flexibility_share * stroke_at(seconds + phase);
         match self.kind {
             MovementKind::Free => None,
             MovementKind::LeftRight => Some(Vector::y() * stroke),
             MovementKind::ForwardBackward => Some(Vector::x() * stroke),
             MovementKind::UpDown => Some(Vector::z() * stroke),
             MovementKind::Circles => {
-                let turn = std::f64::consts::TAU * seconds / CIRCLE_SECONDS + phases[0];
+                let turn = std::f64::consts::TAU * seconds / CIRCLE_SECONDS + phase;
                 Some(Vector::new(0.0, turn.cos(), turn.sin()) * (CIRCLE_METRES * self.flexibility_share))
             }
         }
@@ -95,11 +98,12 @@ impl Movement {
 
     /// The posture's angles with a swing about each, kept within what people reach.
     fn swung(&self, posture: &ArmAngles, phases: &[f64; 4], seconds: f64) -> ArmAngles {
-        let swings: [f64; 4] = std::array::from_fn(|angle| {
-            let turn = std::f64::consts::TAU * PACE_HZ[angle] * seconds + phases[angle];
-            SWING_DEGREES[angle] * self.flexibility_share * turn.sin()
-        });
-        moved(posture, &swings.into())
+        let swing =
+            |degrees: f64, pace: f64, phase: f64| degrees * (std::f64::consts::TAU * pace * seconds + phase).sin();
+        let mut swings = SWING_DEGREES.into_iter().zip(PACE_HZ).zip(phases);
+        let swings =
+            [(); 4].map(|()| swings.next().map_or(0.0, |((degrees, pace), phase)| swing(degrees, pace, *phase)));
+        moved(posture, swings.map(|degrees| degrees * self.flexibility_share))
     }
 
     pub(super) fn check(&self, key: &str) -> Result<(), PersonError> {
@@ -111,10 +115,10 @@ impl Movement {
 fn stroke_at(seconds: f64) -> f64 {
     let part = REST_SECONDS + WAY_SECONDS;
     let round = seconds.rem_euclid(4.0 * part);
-    let [from, to] = match (round / part) as u32 {
-        0 => [0.0, 1.0],
-        1 => [1.0, 0.0],
-        2 => [0.0, -1.0],
+    let [from, to] = match round / part {
+        ..1.0 => [0.0, 1.0],
+        ..2.0 => [1.0, 0.0],
+        ..3.0 => [0.0, -1.0],
         _ => [-1.0, 0.0],
     };
     let way = ((round % part - REST_SECONDS) / WAY_SECONDS).clamp(0.0, 1.0);
@@ -122,12 +126,12 @@ fn stroke_at(seconds: f64) -> f64 {
 }
 
 /// A posture with changes in degrees (elevation, plane, rotation, elbow), within what people reach.
-fn moved(posture: &ArmAngles, degrees: &Vector4<f64>) -> ArmAngles {
+fn moved(posture: &ArmAngles, [elevation, plane, rotation, elbow]: [f64; 4]) -> ArmAngles {
     ArmAngles {
-        elevation_degrees: (posture.elevation_degrees + degrees[0]).clamp(0.0, 180.0),
-        plane_degrees: (posture.plane_degrees + degrees[1]).clamp(-90.0, 135.0),
-        rotation_degrees: (posture.rotation_degrees + degrees[2]).clamp(-104.0, 104.0),
-        elbow_degrees: (posture.elbow_degrees + degrees[3]).clamp(0.0, 150.0),
+        elevation_degrees: (posture.elevation_degrees + elevation).clamp(0.0, 180.0),
+        plane_degrees: (posture.plane_degrees + plane).clamp(-90.0, 135.0),
+        rotation_degrees: (posture.rotation_degrees + rotation).clamp(-104.0, 104.0),
+        elbow_degrees: (posture.elbow_degrees + elbow).clamp(0.0, 150.0),
     }
 }
 
@@ -138,16 +142,11 @@ fn reaching(posture: &ArmAngles, side: Side, sizes: &ArmSizes, goal: &Point) -> 
     let mut angles = *posture;
     for _ in 0..STEPS {
         let here = hand(&angles);
-        let columns: [Vector; 4] = std::array::from_fn(|angle| {
-            let mut change = Vector4::zeros();
-            // Inward, so that a joint at its limit still shows how it would move.
-            change[angle] = if angle == 3 { 0.1 } else { -0.1 };
-            (hand(&moved(&angles, &change)) - here) / change[angle]
-        });
+        let columns = PROBES.map(|probe| (hand(&moved(&angles, probe)) - here) / probe.iter().sum::<f64>());
         let slope = Matrix3x4::from_columns(&columns);
         let damped = slope * slope.transpose() + Matrix3::identity() * (DAMPING * DAMPING / 1e3);
         let Some(inverse) = damped.try_inverse() else { return angles };
-        angles = moved(&angles, &(slope.transpose() * (inverse * (goal - here))));
+        angles = moved(&angles, (slope.transpose() * (inverse * (goal - here))).into());
     }
     angles
 }

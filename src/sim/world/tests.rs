@@ -157,3 +157,36 @@ fn a_world_that_cannot_be_is_refused() {
     let setup = WorldSetup { pose_noise_metres: f64::NAN, ..WorldSetup::default() };
     assert!(World::new(&setup).unwrap_err().to_string().contains("pose_noise_metres"));
 }
+
+/// In real time the world is woken whenever the wire has time, in virtual time at every beat: what it does depends on the
+/// commands and their beats alone.
+#[test]
+fn a_world_that_is_woken_late_gives_the_same_trial_for_the_same_commands() {
+    let run = |wakes: &dyn Fn(u64) -> bool| {
+        let mut world = world(&WorldSetup { seed: 5, ..WorldSetup::default() });
+        world.switch(SwitchRequest::Enable, at(0));
+        let mut said = SimOutput::default();
+        let mut hear = |output: SimOutput| {
+            said.endpoints.extend(output.endpoints);
+            said.joints.extend(output.joints);
+            said.robot.extend(output.robot);
+            said.collisions.extend(output.collisions);
+            said.bodies.extend(output.bodies);
+        };
+        for beat in 1..=400 {
+            if beat % 15 == 0 {
+                hear(world.step(at(beat)));
+                let goal = JointVector::from(UNTUCKED_RIGHT).add_scalar(0.001 * (beat / 15) as f64);
+                world.command_joints(Side::Right, &goal, at(beat));
+            } else if wakes(beat) {
+                hear(world.step(at(beat)));
+            }
+        }
+        hear(world.step(at(400)));
+        said
+    };
+    let every_beat = run(&|_| true);
+    assert_eq!(every_beat.endpoints.len(), 800);
+    assert_eq!(run(&|beat| beat % 7 == 3), every_beat);
+    assert_eq!(run(&|_| false), every_beat);
+}
