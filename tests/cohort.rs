@@ -29,18 +29,17 @@ fn through_the_supervisor(name: &str, seed: u64) -> (f64, f64) {
 }
 
 #[test]
-fn the_rig_and_the_whole_node_agree_on_how_a_person_of_the_cohort_is_dressed() {
-    let people = cohort().unwrap();
-    let participant = people.iter().find(|participant| participant.number == 4).unwrap();
-    let seeds = 1..=4;
-    let count = 4.0;
-    let (mut node, mut rig) = ((0.0, 0.0), (0.0, 0.0));
-    for seed in seeds {
-        let (iterations, energy) = through_the_supervisor("participant-04", seed);
-        node = (node.0 + iterations / count, node.1 + energy / count);
-        let record = dress(&participant.setup(1, seed), Side::Right).unwrap();
-        rig = (rig.0 + record.iterations() as f64 / count, rig.1 + record.energy_newtons() / count);
+fn the_rig_and_the_whole_node_agree_on_how_people_of_the_cohort_are_dressed() {
+    for participant in cohort().unwrap().iter().filter(|participant| matches!(participant.number, 1 | 10)) {
+        let name = format!("participant-{:02}", participant.number);
+        let (mut node, mut rig) = ((0.0, 0.0), (0.0, 0.0));
+        for seed in 1..=4 {
+            let (iterations, energy) = through_the_supervisor(&name, seed);
+            node = (node.0 + iterations / 4.0, node.1 + energy / 4.0);
+            let record = dress(&participant.setup(1, seed), Side::Right).unwrap();
+            rig = (rig.0 + record.iterations() as f64 / 4.0, rig.1 + record.energy_newtons() / 4.0);
+        }
+        assert!((node.0 - rig.0).abs() <= 1.0, "{name}: {} iterations through the node, {} on the rig", node.0, rig.0);
+        assert!((node.1 / rig.1 - 1.0).abs() < 0.5, "{name}: {} N through the node, {} N on the rig", node.1, rig.1);
     }
-    assert!((node.0 - rig.0).abs() <= 1.0, "iterations: {} through the node, {} on the rig", node.0, rig.0);
-    assert!((node.1 / rig.1 - 1.0).abs() < 0.5, "energy: {} N through the node, {} N on the rig", node.1, rig.1);
 }
