@@ -113,16 +113,16 @@ pub(super) fn write_labels(path: &Path, size: (usize, usize), labels: &[u8]) -> 
 }
 
 fn write(path: &Path, (width, height): (usize, usize), bits: png::BitDepth, bytes: &[u8]) -> Result<(), Failure> {
-    let mut encoded = Vec::new();
+    let mut file = Vec::new();
     let (width, height) = (u32::try_from(width), u32::try_from(height));
-    let mut encoder = png::Encoder::new(&mut encoded, width.map_err(Failure::fault)?, height.map_err(Failure::fault)?);
+    let mut encoder = png::Encoder::new(&mut file, width.map_err(Failure::fault)?, height.map_err(Failure::fault)?);
     encoder.set_color(png::ColorType::Grayscale);
     encoder.set_depth(bits);
     encoder.set_compression(png::Compression::Fast);
     let mut writer = encoder.write_header().map_err(Failure::fault)?;
     writer.write_image_data(bytes).map_err(Failure::fault)?;
     writer.finish().map_err(Failure::fault)?;
-    write_whole(path, &encoded).map_err(Failure::configuration)
+    write_whole(path, &file).map_err(Failure::configuration)
 }
 
 #[cfg(test)]

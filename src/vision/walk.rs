@@ -37,7 +37,7 @@ pub fn plain_leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f3
                 };
                 walking += 1;
                 let place = (f32::from(pixel.column), f32::from(pixel.row));
-                let right = image.response(place, per_metre(pixel, ratio), &node.offsets()) >= node.threshold;
+                let right = image.response(place, per_metre(*pixel, ratio), &node.offsets()) >= node.threshold;
                 *next = node.next + u32::from(right);
             }
         }
@@ -46,7 +46,7 @@ pub fn plain_leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f3
 }
 
 /// 1/z in 1/m, corrected for the focal length.
-pub(super) fn per_metre(pixel: &Pixel, ratio: f32) -> f32 {
+pub(super) fn per_metre(pixel: Pixel, ratio: f32) -> f32 {
     1000.0 / f32::from(pixel.depth.max(1)) * ratio
 }
 

@@ -112,7 +112,9 @@ pub fn training_set(frames: &[Frame], focal: f64, per_part: usize, progress: &(d
         })
         .collect();
     let mut set = TrainingSet::new(focal, per_part);
-    pieces.into_iter().for_each(|piece| set.append(piece));
+    for piece in pieces {
+        set.append(piece);
+    }
     set
 }
 

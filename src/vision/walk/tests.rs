@@ -49,8 +49,9 @@ fn every_way_of_walking_ends_in_the_same_leaves() {
         let tree = tree(&mut random);
         let (image, pixels) = scene(&mut random, 67, 43);
         let ratio = random.random_range(0.9..1.1);
-        let one_by_one =
-            |pixel: &Pixel| tree.leaf(&image, (f32::from(pixel.column), f32::from(pixel.row)), per_metre(pixel, ratio));
+        let one_by_one = |pixel: &Pixel| {
+            tree.leaf(&image, (f32::from(pixel.column), f32::from(pixel.row)), per_metre(*pixel, ratio))
+        };
         let expected: Vec<u32> = pixels.iter().map(one_by_one).collect();
         let (mut plain, mut fast) = (Vec::new(), Vec::new());
         plain_leaves(&tree, &image, &pixels, ratio, &mut plain);

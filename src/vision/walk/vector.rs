@@ -92,7 +92,9 @@ unsafe fn walk(nodes: &[Node], image: &ProbeImage, group: &[Pixel; GROUP], ratio
     for (found, walkers) in found.as_chunks_mut::<LANES>().0.iter_mut().zip(&walkers) {
         // SAFETY: `found` is eight words, which need no alignment.
         unsafe { _mm256_storeu_si256(found.as_mut_ptr().cast(), walkers.next) };
-        found.iter_mut().for_each(|next| *next &= !LEAF);
+        for next in found {
+            *next &= !LEAF;
+        }
     }
     found
 }
@@ -108,7 +110,7 @@ fn start(pixels: &[Pixel; LANES], ratio: f32) -> Walkers {
     Walkers {
         column: load(&|pixel| f32::from(pixel.column)),
         row: load(&|pixel| f32::from(pixel.row)),
-        per_metre: load(&|pixel| per_metre(pixel, ratio)),
+        per_metre: load(&|pixel| per_metre(*pixel, ratio)),
         node: _mm256_setzero_si256(),
         next: _mm256_setzero_si256(),
     }
