@@ -1,6 +1,15 @@
 //! A planner outside the process, with the simulated robot and person in virtual time: what is asked, and what every kind of
 //! answer comes to.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a test may fail loudly anywhere"
+)]
+
 use valet::body::{PerSide, Side};
 use valet::command::Command;
 use valet::headless::VirtualTrial;
