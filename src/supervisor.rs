@@ -255,7 +255,8 @@ impl Supervisor {
     fn see_robot(&mut self, now: Stamp, state: &RobotState) {
         let was_enabled = self.view.robot.state.is_some_and(|before| before.enabled);
         let stopped_itself = self.protection.see_robot(now, state);
-        self.view.robot.state = Some(*state);
+        // How long it holds is counted by the time that is known here, not by the sender's.
+        self.view.robot.state = Some(RobotState { stamp: now, ..*state });
         if let Some(cause) = stopped_itself {
             let outcome = if state.source == StopSource::Fault { Outcome::Fault } else { Outcome::OperatorStop };
             self.enter_stop(now, &cause, outcome);
@@ -288,12 +289,16 @@ impl Supervisor {
     fn see_link(&mut self, now: Stamp, event: &LinkEvent) {
         match event {
             LinkEvent::MasterLost => {
+                self.protection.watchdogs_mut().master(false);
                 self.hold_or_warn(now, "the ROS master does not answer: start roscore again, then continue");
             }
-            LinkEvent::MasterBack => self.log(now, Level::Information, "link", "the ROS master answers".into()),
+            LinkEvent::MasterBack => {
+                self.protection.watchdogs_mut().master(true);
+                self.log(now, Level::Information, "link", "the ROS master answers".into());
+            }
             LinkEvent::ForeignPublisher { topic, node } => {
                 self.protection.watchdogs_mut().foreign_publisher(topic, node);
-                self.hold(now, &format!("{node} publishes on {topic}: end it, then continue"));
+                self.hold_or_warn(now, &format!("{node} publishes on {topic}: end it, then continue"));
             }
             LinkEvent::ForeignPublisherGone { topic, node } => {
                 self.protection.watchdogs_mut().foreign_publisher_gone(topic, node);

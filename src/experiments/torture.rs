@@ -131,7 +131,7 @@ impl TortureTrial {
             let now = self.plan.clock(START, world_time);
             self.beat(world_time, now);
             if beat % BEATS_PER_LOOK == 0 {
-                self.look(now);
+                self.look(world_time, now);
             }
             left -= u32::from(self.result.outcome.is_some());
             if self.result.violation.is_some() || left == 0 {
@@ -164,7 +164,7 @@ impl TortureTrial {
         self.step(world_time, now, &Input::Tick);
     }
 
-    fn look(&mut self, now: Stamp) {
+    fn look(&mut self, world_time: Stamp, now: Stamp) {
         let seen = self.supervisor.snapshot(now);
         if let Err((invariant, text)) = self.witness.look(now, &seen) {
             self.violate(now, invariant, text);
@@ -174,7 +174,6 @@ impl TortureTrial {
             return;
         }
         let Some((command, origin)) = self.operator.act(&seen) else { return };
-        let world_time = now;
         self.step(world_time, now, &Input::Operator { command, origin });
     }
 
@@ -183,6 +182,7 @@ impl TortureTrial {
             return;
         }
         let effects = self.supervisor.step(now, input);
+        self.witness.live(world_time);
         self.result.steps += 1;
         self.guards.observe(now, input, self.supervisor.is_stopped());
         self.result.violation = self.witness.judge(now, input, &effects);

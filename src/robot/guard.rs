@@ -146,9 +146,10 @@ impl<L: Limb> GuardedLimb<L> {
         self.judge_workspace(joints, &measured)
     }
 
-    /// What was sent before, where the robot still follows it.
+    /// What was sent before, where the robot still follows it. Where the clock went back, nobody knows: the next command is a
+    /// first one.
     fn previous(&self, now: Stamp) -> Option<Sent> {
-        self.sent.filter(|sent| now.since(sent.stamp) < self.settings.command_timeout)
+        self.sent.filter(|sent| now.checked_since(sent.stamp).is_some_and(|age| age < self.settings.command_timeout))
     }
 
     fn judge_positions(&self, joints: &JointVector) -> Result<(), LimitBreach> {

@@ -22,6 +22,9 @@ use std::time::Duration;
 /// An edge of `enabled` within this span of valet's own request is valet's own: the maker's tool waits 5 s for a disable.
 const OWN_EDGE_WITHIN: Duration = Duration::from_secs(5);
 
+/// What is said of a master that is lost.
+const MASTER_LOST: &str = "the ROS master does not answer: start roscore again, then continue";
+
 /// What is watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -46,6 +49,8 @@ pub enum Watch {
     Enable,
     /// Another node that publishes where only valet may.
     ForeignPublisher,
+    /// The ROS master.
+    Master,
 }
 
 /// Watches all inputs of a trial.
@@ -87,6 +92,7 @@ pub struct Watchdogs {
     collision: PerSide<bool>,
     /// Topic and node of each publisher that ought not to be there.
     foreign: BTreeSet<(String, String)>,
+    master_is_lost: bool,
     latched: BTreeMap<Watch, String>,
 }
 
@@ -114,6 +120,7 @@ impl Watchdogs {
             last_tick: None,
             collision: PerSide::default(),
             foreign: BTreeSet::new(),
+            master_is_lost: false,
             latched: BTreeMap::new(),
             settings,
         }
@@ -218,6 +225,11 @@ impl Watchdogs {
         self.foreign.remove(&(topic.to_owned(), node.to_owned()));
     }
 
+    /// The ROS master answers, or does not.
+    pub const fn master(&mut self, answers: bool) {
+        self.master_is_lost = !answers;
+    }
+
     /// The supervisor's beat.
     pub fn tick(&mut self, now: Stamp) {
         let Some(last) = self.last_tick.replace(now) else { return };
@@ -272,6 +284,9 @@ impl Watchdogs {
         }
         if let Some((topic, node)) = self.foreign.first() {
             found.push((Watch::ForeignPublisher, Verdict::new(Reaction::Hold, foreign_words(topic, node))));
+        }
+        if self.master_is_lost {
+            found.push((Watch::Master, Verdict::new(Reaction::Hold, MASTER_LOST)));
         }
         found.push((Watch::RobotState, late("the robot's state", &self.robot, now)));
         found.push((Watch::Pose, self.judge_pose(now)));

@@ -86,7 +86,11 @@ impl Supervisor {
         if self.mode != Mode::Held {
             return Err("nothing is held".into());
         }
-        self.may_move(now)?;
+        if let Err(reason) = self.may_move(now) {
+            // What keeps it now may be something else than what held it first.
+            self.view.trial.hold_cause.clone_from(&reason);
+            return Err(reason);
+        }
         self.protection.watchdogs_mut().acknowledge();
         self.mode = Mode::Running;
         self.log(now, Level::Information, "operator", "the trial goes on".into());

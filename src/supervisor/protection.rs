@@ -169,22 +169,28 @@ impl Protection {
     /// # Errors
     /// The first thing that is missing, in words.
     pub(super) fn may_retreat(&mut self, now: Stamp) -> Result<(), String> {
-        self.watchdogs.require(Watch::Pose, false);
+        self.require_for_dressing(false);
         let ready = self.inputs_ready(now).and_then(|()| self.robot_ready(now));
-        self.watchdogs.require(Watch::Pose, true);
+        self.require_for_dressing(self.retreat.is_none());
         ready?;
         self.highest_load().map(|_| ()).ok_or_else(|| "the force is not known".to_owned())
     }
 
     /// The garment is withdrawn from a hold: slowly, and with no more force than there is now.
     pub(super) fn begin_retreat(&mut self) {
-        self.watchdogs.require(Watch::Pose, false);
+        self.require_for_dressing(false);
         self.retreat = self.highest_load().map(|load| load + RETREAT_MARGIN_NEWTONS);
     }
 
     pub(super) fn end_retreat(&mut self) {
-        self.watchdogs.require(Watch::Pose, true);
+        self.require_for_dressing(true);
         self.retreat = None;
+    }
+
+    /// What dressing needs and the way back does not: the person in sight, and a master.
+    fn require_for_dressing(&mut self, required: bool) {
+        self.watchdogs.require(Watch::Pose, required);
+        self.watchdogs.require(Watch::Master, required);
     }
 
     /// True while the garment is withdrawn from a hold.

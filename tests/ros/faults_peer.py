@@ -137,9 +137,10 @@ class Listener:
 
     def read(self):
         try:
-            while True:
-                message = read_block(self.connection)
-                self.messages.append((time.monotonic(), message))
+            with self.connection:
+                while True:
+                    message = read_block(self.connection)
+                    self.messages.append((time.monotonic(), message))
         except OSError:
             pass
 
@@ -275,11 +276,14 @@ class Laboratory:
         def moving():
             if self.phase() == "holding":
                 # A machine that is too busy for the beat holds: the operator goes on.
-                self.press("p")
-                self.press("y\r")
+                self.go_on()
             return self.moves()
 
         until("an arm that moves", moving)
+
+    def go_on(self):
+        self.press("p")
+        self.press("y\r")
 
     def robot_says_enabled(self):
         return self.robot.newest is not None and self.robot.newest[1] == 1
@@ -320,8 +324,17 @@ class Faults(unittest.TestCase):
         self.laboratory.move()
         return self.laboratory
 
-    def holds(self, laboratory, within=PATIENCE):
-        until("a hold (%s: %s)" % (laboratory.phase(), laboratory.cause()), lambda: laboratory.phase() == "holding", within)
+    def holds(self, laboratory, words=""):
+        def held():
+            if laboratory.phase() != "holding":
+                return False
+            if words in laboratory.cause():
+                return True
+            # A machine that is too busy for the beat held before: the operator goes on, and the fault stands.
+            laboratory.go_on()
+            return False
+
+        until("a hold for '%s'" % words, held)
         # Braking takes less than a second.
         time.sleep(1.0)
         self.assertFalse(laboratory.moves(1.0), "it moves in a hold")
@@ -348,8 +361,7 @@ class Faults(unittest.TestCase):
         laboratory = self.begin()
         laboratory.master.kill()
         laboratory.master.wait()
-        self.holds(laboratory)
-        self.assertIn("master", laboratory.cause())
+        self.holds(laboratory, "master")
         laboratory.start_master()
 
         def registered():
@@ -363,10 +375,8 @@ class Faults(unittest.TestCase):
         laboratory = self.begin()
         intruder = Peer(laboratory.peer.master, "/teleoperation")
         intruder.publish(COMMAND, "baxter_core_msgs/JointCommand", lambda connection: time.sleep(60))
-        self.holds(laboratory)
-        self.assertIn("/teleoperation", laboratory.cause())
-        laboratory.press("p")
-        laboratory.press("y\r")
+        self.holds(laboratory, "/teleoperation")
+        laboratory.go_on()
         time.sleep(1.0)
         self.assertEqual(laboratory.phase(), "holding", "it still publishes")
         intruder.close()
@@ -374,8 +384,7 @@ class Faults(unittest.TestCase):
     def test_second_valet_is_named_and_both_hold(self):
         laboratory = self.begin()
         laboratory.start_console("__name:=valet_two")
-        self.holds(laboratory)
-        self.assertIn("/valet_two", laboratory.cause())
+        self.holds(laboratory, "/valet_two")
 
     def test_second_valet_of_the_same_name_ends_the_first(self):
         laboratory = self.begin()
@@ -469,8 +478,7 @@ class Faults(unittest.TestCase):
             laboratory = Laboratory(record=record, limit=400_000)
             self.laboratory = laboratory
             laboratory.move()
-            self.holds(laboratory)
-            self.assertIn("record", laboratory.cause())
+            self.holds(laboratory, "record")
         finally:
             shutil.rmtree(record, ignore_errors=True)
 

@@ -2,7 +2,7 @@
 
 use super::pull::Step;
 use crate::geometry::Vector;
-use crate::safety::{ForceGuard, GuardSample, GuardSettings, Reaction, Zone};
+use crate::safety::{ExpectedPull, ForceGuard, GuardSample, GuardSettings, Reaction, Zone};
 use crate::sensing::{ForceWindow, TwoRate, TwoRateSettings, WindowForm, WindowSettings};
 use std::collections::VecDeque;
 
@@ -16,20 +16,23 @@ pub(super) struct Bank {
     windows: Vec<ForceWindow>,
     two_rate: Vec<TwoRate>,
     block: VecDeque<Vector>,
-    guard: Option<ForceGuard>,
+    guards: Vec<ForceGuard>,
 }
 
 impl Bank {
     /// The detectors, in the order of their alarms.
-    pub(super) const NAMES: [&'static str; 7] = [
+    pub(super) const NAMES: [&'static str; 8] = [
         "window_magnitude_5_newtons",
         "window_axis_5_newtons",
         "window_vector_5_newtons",
         "two_rate_2.5_newtons",
         "two_rate_5_newtons",
         "block_difference_5_newtons",
-        "force_guard",
+        "force_guard_without_profile",
+        Self::GUARD,
     ];
+    /// The guard as it is used, with the pull that dressing is expected to need.
+    pub(super) const GUARD: &'static str = "force_guard";
 
     /// Detectors that have seen nothing. One whose settings cannot be used would be left out and never alarm.
     pub(super) fn new() -> Self {
@@ -43,7 +46,10 @@ impl Bank {
                 .collect(),
             two_rate: [2.5, 5.0].into_iter().filter_map(two_rate).collect(),
             block: VecDeque::new(),
-            guard: ForceGuard::new(GuardSettings::default()).ok(),
+            guards: [ExpectedPull::none(), ExpectedPull::default()]
+                .into_iter()
+                .filter_map(|expected| ForceGuard::new(GuardSettings { expected, ..GuardSettings::default() }).ok())
+                .collect(),
         }
     }
 
@@ -58,7 +64,7 @@ impl Bank {
             alarms.push(filter.push(step.force, PERIOD_SECONDS).contact);
         }
         alarms.push(self.block_alarms(step.force));
-        alarms.push(self.guard.as_mut().is_some_and(|guard| guard_alarms(guard, step)));
+        alarms.extend(self.guards.iter_mut().map(|guard| guard_alarms(guard, step)));
         alarms
     }
 
@@ -84,7 +90,7 @@ fn guard_alarms(guard: &mut ForceGuard, step: &Step) -> bool {
         velocity: step.velocity,
         acceleration: step.acceleration,
         zone: Zone::Arm,
-        expected_newtons: 0.0,
+        expected_newtons: guard.expected(step.passed),
     });
     if step.take_zero && guard.tare(step.stamp).is_err() {
         return true;

@@ -14,6 +14,9 @@ const STILL_SECONDS: f64 = 1.0;
 const START_SECONDS: f64 = 0.3;
 /// Beyond this force a find comes too late, and a careful operator has let go.
 const TOO_LATE_NEWTONS: f64 = 10.0;
+/// How well it is known where along the arm the gripper is: standard deviation in metres of the pose finder's hand, by which
+/// the guard's expectation is misplaced for a whole pull.
+const PLACE_DEVIATION: f64 = 0.02;
 /// How much one person's arm differs from another's: standard deviation of a factor on the measured profile, from the
 /// measured band of half a newton at seven.
 const PERSON_DEVIATION: f64 = 0.07;
@@ -95,8 +98,10 @@ pub(super) struct Pull {
     pub(super) speed: f64,
     /// Standard deviation along each axis, in newtons.
     pub(super) noise: f64,
-    /// How far the bias drifts over the pull, in newtons.
+    /// How far the bias drifts, in newtons.
     pub(super) drift: f64,
+    /// The way over which it does, in metres.
+    pub(super) drift_metres: f64,
 }
 
 /// One sample of a pull.
@@ -109,6 +114,8 @@ pub(super) struct Step {
     pub(super) velocity: Vector,
     /// Commanded acceleration in m/s².
     pub(super) acceleration: Vector,
+    /// How far along the arm the gripper is taken to be, in metres from the hand.
+    pub(super) passed: f64,
     /// The true pull in newtons.
     pub(super) pull_newtons: f64,
     /// Time since the sleeve caught; `None` before, and where it does not catch.
@@ -126,7 +133,8 @@ impl Pull {
         let way = Vector::new(-1.0, 0.0, dip).normalize();
         let start_bias = direction(generator) * 5.0;
         let drift = direction(generator) * self.drift;
-        let duration = Sleeve::Good.end() / self.speed + START_SECONDS / 2.0;
+        let duration = self.drift_metres / self.speed + START_SECONDS / 2.0;
+        let misplaced = PLACE_DEVIATION * normal(generator);
         let mut steps = Vec::new();
         let (mut metres, mut seconds, mut caught_at) = (0.0, -STILL_SECONDS, None);
         while metres < self.sleeve.end() {
@@ -147,6 +155,7 @@ impl Pull {
                 force: way * pull + bias + noise,
                 velocity: Vector::new(speed, 0.0, 0.0),
                 acceleration: Vector::new(acceleration, 0.0, 0.0),
+                passed: (metres - Sleeve::CATCH + misplaced).max(0.0),
                 pull_newtons: pull,
                 since_catch: caught_at.map(|caught| seconds - caught),
                 take_zero: seconds < 0.0 && seconds + PERIOD_SECONDS >= 0.0,

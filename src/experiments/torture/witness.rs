@@ -40,6 +40,8 @@ const ACCELERATION_TOLERANCE: f64 = 1.5;
 #[derive(Clone, Copy, Debug)]
 struct Sent {
     at: Stamp,
+    /// The same moment by the computer's clock.
+    clock: Stamp,
     joints: JointVector,
     tip: Point,
     /// Joint speeds since the setpoint before, where that was one beat ago.
@@ -72,6 +74,8 @@ pub(super) struct Witness {
     ended: bool,
     /// How far apart the grippers were sent last, in metres.
     apart: f64,
+    /// The time of the world, which no jump of the computer's clock changes: how long something lasts is measured by it.
+    lived: Stamp,
 }
 
 pub(super) type Judged = Result<(), (Invariant, String)>;
@@ -89,13 +93,19 @@ impl Witness {
             held_since: None,
             ended: false,
             apart: f64::INFINITY,
+            lived: Stamp::ZERO,
         }
+    }
+
+    /// Is told the time of the world.
+    pub(super) const fn live(&mut self, world_time: Stamp) {
+        self.lived = world_time;
     }
 
     /// Judges, ten times a second, what the screen shows.
     pub(super) fn look(&mut self, now: Stamp, seen: &Snapshot) -> Judged {
         if seen.trial.phase == TrialPhase::Holding {
-            self.held_since.get_or_insert(now);
+            self.held_since.get_or_insert(self.lived);
         } else {
             self.held_since = None;
         }
@@ -117,20 +127,21 @@ impl Witness {
         let acts_before = self.acts;
         self.take(now, input);
         let judged = self.judge_command(acts_before, input, effects).and_then(|()| self.judge_effects(now, effects));
-        let judged = judged.and_then(|()| self.judge_force(now));
+        let judged = judged.and_then(|()| self.judge_force());
         judged.err().map(|(invariant, text)| Violation { invariant, at_seconds: now.seconds(), text })
     }
 
     fn take(&mut self, now: Stamp, input: &Input) {
+        let lived = self.lived;
         match input {
             Input::Endpoint(sample) => {
                 let arm = self.arms.get_mut(sample.side);
                 let good = sample.wrench.force.is_finite();
                 arm.heard = Some(now);
                 arm.force = good.then_some(now);
-                let moving = arm.moved.is_some_and(|moved| now.since(moved) <= Duration::from_millis(50));
+                let moving = arm.moved.is_some_and(|moved| lived.since(moved) <= Duration::from_millis(50));
                 if good && moving && sample.wrench.force.norm() > UNBEARABLE_NEWTONS {
-                    self.unbearable_since.get_or_insert(now);
+                    self.unbearable_since.get_or_insert(lived);
                 }
             }
             Input::Joints(sample) => {
@@ -221,7 +232,7 @@ impl Witness {
             !holds(now, arm.force, FORCE_HOLDS) || !holds(now, arm.joints.map(|(at, _)| at), JOINTS_HOLD)
         });
         if missing {
-            self.unsafe_since.get_or_insert(now);
+            self.unsafe_since.get_or_insert(self.lived);
         } else {
             self.unsafe_since = None;
         }
@@ -247,16 +258,16 @@ impl Witness {
     }
 
     /// Judges a setpoint that has left: where it leads and how fast.
-    pub(super) fn judge_sent(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Judged {
+    pub(super) fn judge_sent(&mut self, clock: Stamp, side: Side, joints: &JointVector) -> Judged {
         let tip: Point = self.model.arm(side).forward(joints).translation.vector.into();
-        let arm = *self.arms.get(side);
+        let (now, arm) = (self.lived, *self.arms.get(side));
         let before = arm.sent.filter(|before| holds(now, Some(before.at), ONE_MOTION));
-        let beat = before.as_ref().map(|before| now.since(before.at).as_secs_f64()).filter(|beat| *beat <= 0.02);
-        let speed = before.zip(beat).map(|(before, beat)| (joints - before.joints) / beat.max(0.01));
-        let sent = Sent { at: now, joints: *joints, tip, speed };
+        let mut sent = Sent { at: now, clock, joints: *joints, tip, speed: None };
+        let next = before.filter(|before| now.since(before.at) <= Duration::from_millis(20));
+        sent.speed = next.map(|before| (joints - before.joints) / seconds_between(&before, &sent));
         match &before {
             None => first_step(side, &arm, &sent)?,
-            Some(before) => self.judge_step(now, side, before, &sent)?,
+            Some(before) => self.judge_step(side, before, &sent)?,
         }
         self.judge_workspace(side, arm.sent.map(|before| before.tip), &sent)?;
         self.arms.get_mut(side).sent = Some(sent);
@@ -274,14 +285,14 @@ impl Witness {
         Ok(())
     }
 
-    fn judge_step(&mut self, now: Stamp, side: Side, before: &Sent, sent: &Sent) -> Judged {
+    fn judge_step(&mut self, side: Side, before: &Sent, sent: &Sent) -> Judged {
         self.judge_acceleration(side, before, sent)?;
         let step = sent.joints - before.joints;
         if step.amax() < 1e-9 {
             return Ok(());
         }
-        self.arms.get_mut(side).moved = Some(now);
-        let seconds = now.since(before.at).as_secs_f64().max(0.01);
+        self.arms.get_mut(side).moved = Some(self.lived);
+        let seconds = seconds_between(before, sent);
         let speed = self.model.arm(side).limits().speed;
         if let Some((index, joint)) = step
             .iter()
@@ -294,12 +305,12 @@ impl Witness {
         if metres > self.limits.speed * 1.1 {
             return Err((Invariant::Speed, format!("{side} gripper at {metres:.3} m/s")));
         }
-        self.judge_motion(now)
+        self.judge_motion()
     }
 
     fn judge_acceleration(&self, side: Side, before: &Sent, sent: &Sent) -> Judged {
         let Some((was, is)) = before.speed.zip(sent.speed) else { return Ok(()) };
-        let beat = sent.at.since(before.at).as_secs_f64().max(0.01);
+        let beat = seconds_between(before, sent);
         let most = self.limits.joint_acceleration * ACCELERATION_TOLERANCE;
         let beyond = ((is - was) / beat).iter().zip(most.iter()).position(|(value, most)| value.abs() > *most);
         match beyond {
@@ -312,14 +323,14 @@ impl Witness {
     }
 
     /// Something moved: was that allowed at this moment?
-    fn judge_motion(&self, now: Stamp) -> Judged {
-        let too_long = |since: Option<Stamp>| since.filter(|since| now.since(*since) > BRAKING);
+    fn judge_motion(&self) -> Judged {
+        let too_long = |since: Option<Stamp>| since.filter(|since| self.lived.since(*since) > BRAKING);
         if let Some(since) = too_long(self.unsafe_since) {
-            let seconds = now.since(since).as_secs_f64();
+            let seconds = self.lived.since(since).as_secs_f64();
             return Err((Invariant::InputsAreFresh, format!("motion {seconds:.2} s after an input was lost")));
         }
         if let Some(since) = too_long(self.held_since) {
-            let seconds = now.since(since).as_secs_f64();
+            let seconds = self.lived.since(since).as_secs_f64();
             return Err((Invariant::HoldHolds, format!("motion {seconds:.2} s into a hold")));
         }
         Ok(())
@@ -340,14 +351,20 @@ impl Witness {
         Ok(())
     }
 
-    fn judge_force(&self, now: Stamp) -> Judged {
+    fn judge_force(&self) -> Judged {
         match self.unbearable_since {
-            Some(since) if self.acts == 3 && now.since(since) > STOP_WITHIN => {
+            Some(since) if self.acts == 3 && self.lived.since(since) > STOP_WITHIN => {
                 Err((Invariant::ForceStops, format!("more than {UNBEARABLE_NEWTONS} N and no stop")))
             }
             _ => Ok(()),
         }
     }
+}
+
+/// The time that a step may take: by the world, and where the clock jumped ahead, by as much of it as a late beat makes up for.
+fn seconds_between(before: &Sent, sent: &Sent) -> f64 {
+    let by_clock = sent.clock.since(before.clock).as_secs_f64().min(0.02);
+    sent.at.since(before.at).as_secs_f64().max(by_clock).max(0.01)
 }
 
 /// Whether something that arrived at a moment holds still; where the clock went back it does not.

@@ -73,6 +73,17 @@ fn one_joint_that_is_not_heard_of_any_more_is_enough() {
 }
 
 #[test]
+fn after_the_clock_went_back_the_next_command_is_a_first_one() {
+    let mut limb = guarded();
+    let mut joints = JointVector::from(HOME);
+    limb.command(at(1010), &joints).unwrap();
+    limb.observe(at(500), &HOME.map(Some));
+    joints[2] += 0.06;
+    assert!(matches!(refused(&mut limb, at(510), &joints).what, Limit::Following { .. }));
+    limb.command(at(510), &JointVector::from(HOME)).unwrap();
+}
+
+#[test]
 fn a_first_command_far_from_where_the_arm_is_is_refused() {
     let mut joints = JointVector::from(HOME);
     joints[2] += 0.06;

@@ -219,6 +219,19 @@ fn s_31_a_foreign_publisher_is_named_and_held() {
 }
 
 #[test]
+fn s_31_a_master_that_is_gone_holds_until_it_is_back_and_the_operator_acts() {
+    let mut watchdogs = running();
+    watchdogs.master(false);
+    assert!(watchdogs.judge(at(601)).cause.contains("roscore"));
+    watchdogs.acknowledge();
+    assert_eq!(watchdogs.judge(at(602)).reaction, Hold, "it is still gone");
+    watchdogs.master(true);
+    assert_eq!(watchdogs.judge(at(603)).reaction, Hold, "the operator has not acted");
+    watchdogs.acknowledge();
+    assert_eq!(watchdogs.judge(at(604)).reaction, Clear);
+}
+
+#[test]
 fn s_32_a_hold_stays_after_its_cause_is_gone_until_the_operator_acknowledges_it() {
     let mut watchdogs = running();
     for now in (610..=700).step_by(10) {
