@@ -165,10 +165,10 @@ impl ForceGuard {
 
     fn judge_catch(&mut self, now: Vector, sample: &GuardSample, seconds: f64) -> Verdict {
         let metres = sample.velocity.norm() * seconds;
-        let beyond = beyond_expected(now, sample);
         let mask = self.mask(sample);
         for (fit, limits) in [(&mut self.soft, &self.settings.catch), (&mut self.hard, &self.settings.hard_catch)] {
-            fit.push(beyond, metres);
+            // The limits of growth were chosen on the whole force: what is expected is not taken off here.
+            fit.push(now, metres);
             fit.judge(sample.stamp, limits.newtons_per_metre, limits.least_newtons + mask);
         }
         let limits = [(&self.soft, &self.settings.catch), (&self.hard, &self.settings.hard_catch)];

@@ -2,7 +2,7 @@
 
 use super::pull::Step;
 use crate::geometry::Vector;
-use crate::safety::{ExpectedPull, ForceGuard, GuardSample, GuardSettings, Reaction, Zone};
+use crate::safety::{ForceGuard, GuardSample, GuardSettings, Reaction, Zone};
 use crate::sensing::{ForceWindow, TwoRate, TwoRateSettings, WindowForm, WindowSettings};
 use std::collections::VecDeque;
 
@@ -21,17 +21,16 @@ pub(super) struct Bank {
 
 impl Bank {
     /// The detectors, in the order of their alarms.
-    pub(super) const NAMES: [&'static str; 8] = [
+    pub(super) const NAMES: [&'static str; 7] = [
         "window_magnitude_5_newtons",
         "window_axis_5_newtons",
         "window_vector_5_newtons",
         "two_rate_2.5_newtons",
         "two_rate_5_newtons",
         "block_difference_5_newtons",
-        "force_guard_without_profile",
         Self::GUARD,
     ];
-    /// The guard as it is used, with the pull that dressing is expected to need.
+    /// The guard as it is used.
     pub(super) const GUARD: &'static str = "force_guard";
 
     /// Detectors that have seen nothing. One whose settings cannot be used would be left out and never alarm.
@@ -46,10 +45,7 @@ impl Bank {
                 .collect(),
             two_rate: [2.5, 5.0].into_iter().filter_map(two_rate).collect(),
             block: VecDeque::new(),
-            guards: [ExpectedPull::none(), ExpectedPull::default()]
-                .into_iter()
-                .filter_map(|expected| ForceGuard::new(GuardSettings { expected, ..GuardSettings::default() }).ok())
-                .collect(),
+            guards: ForceGuard::new(GuardSettings::default()).into_iter().collect(),
         }
     }
 

@@ -155,7 +155,7 @@ impl Default for ExpectedPull {
 
 impl ExpectedPull {
     /// The most that a profile may expect anywhere, in newtons: a normal pull along the forearm (Kapusta). What is expected
-    /// is taken off work and growth only, never off the tiers.
+    /// is taken off the work only, never off the tiers.
     pub const MOST_NEWTONS: f64 = 12.0;
 
     /// Nothing is expected anywhere.
