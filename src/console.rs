@@ -29,7 +29,7 @@ pub use keymap::{Action, Chord, Entry, Guard, KeyMap, KeyMapError, Scope, Screen
 pub use measure::{FrameTimes, frame_times};
 pub use options::{ColourChoice, ConsoleOptions, GlyphChoice, KeyNames, ThemeName};
 pub use practice::Practice;
-pub use terminal::run;
+pub use terminal::{Reload, run, run_reloading};
 pub use theme::{Look, Role};
 pub use view::ViewState;
 

@@ -15,6 +15,7 @@ mod planner;
 mod protection;
 mod running;
 mod settings;
+mod sign_check;
 mod tuning;
 mod view;
 mod warm;
@@ -82,6 +83,7 @@ pub struct Supervisor {
     questions: planner::Questions,
     view: Snapshot,
     comparison: compare::Comparison,
+    sign_check: Option<sign_check::SignCheck>,
     effects: Effects,
 }
 
@@ -110,6 +112,7 @@ impl Supervisor {
             questions: planner::Questions::default(),
             view: Snapshot::default(),
             comparison: compare::Comparison::default(),
+            sign_check: None,
             effects: Effects::new(),
         };
         supervisor.prepare_view();
@@ -239,6 +242,7 @@ impl Supervisor {
         let passed = dressing.map(|trial| trial.metres_at(&position));
         let detection = self.protection.see_endpoint(now, sample, passed, &self.drive);
         self.show_force(sample);
+        self.follow_sign_check(now, sample.side);
         let Some(detection) = detection else { return };
         let listens =
             self.trial.as_ref().is_some_and(|trial| trial.arm() == sample.side && trial.listens_at(&position));

@@ -133,6 +133,11 @@ impl App {
         self.view.message = Some(Message { text: text.into(), refused: true });
     }
 
+    /// Tells the operator that something was done.
+    pub fn inform(&mut self, text: impl Into<String>) {
+        self.say(text);
+    }
+
     fn say(&mut self, text: impl Into<String>) {
         self.view.message = Some(Message { text: text.into(), refused: false });
     }

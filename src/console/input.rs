@@ -29,6 +29,7 @@ pub(super) enum Heard {
 pub(super) struct InputThread {
     leave: Arc<AtomicBool>,
     paused: Arc<AtomicBool>,
+    keys: Sender<KeyMap>,
     handle: Option<JoinHandle<()>>,
 }
 
@@ -38,8 +39,13 @@ impl InputThread {
         let leave = Arc::new(AtomicBool::new(false));
         let paused = Arc::new(AtomicBool::new(false));
         let (told_to_leave, told_to_pause) = (Arc::clone(&leave), Arc::clone(&paused));
+        let (renewed, renewals) = crossbeam_channel::unbounded();
+        let mut keys = keys;
         let body = move || {
             while !told_to_leave.load(Ordering::Relaxed) {
+                if let Some(newest) = renewals.try_iter().last() {
+                    keys = newest;
+                }
                 if told_to_pause.load(Ordering::Relaxed) {
                     thread::sleep(PATIENCE);
                 } else if !listen(&keys, stop.as_ref(), &heard) {
@@ -48,12 +54,20 @@ impl InputThread {
             }
         };
         let handle = thread::Builder::new().name("keys".into()).spawn(body)?;
-        Ok(Self { leave, paused, handle: Some(handle) })
+        Ok(Self { leave, paused, keys: renewed, handle: Some(handle) })
     }
 
     /// Leaves the terminal's input alone, or takes it up again: while the shell has it.
     pub(super) fn pause(&self, paused: bool) {
         self.paused.store(paused, Ordering::Relaxed);
+    }
+}
+
+impl InputThread {
+    /// Stops at the keys of this table from now on. The two stop keys are in every table.
+    pub(super) fn use_keys(&self, keys: KeyMap) {
+        // A thread that has ended reads no keys any more.
+        let _ = self.keys.send(keys);
     }
 }
 

@@ -19,17 +19,36 @@ use signals::Signals;
 use std::io::IsTerminal;
 use std::sync::Arc;
 
+/// Reads theme and keys again.
+pub type Reload<'a> = dyn FnMut() -> Result<ConsoleOptions, String> + 'a;
+
 /// Runs the console on this process' terminal until the operator leaves it, the process is told to end or the terminal
 /// is gone. `replay` is given where a recorded trial is shown.
 ///
 /// # Errors
 /// A [`ConsoleError`] where there is no terminal, the key table is not usable, or the terminal fails at the start.
 pub fn run(
+    snapshots: impl SnapshotSource,
+    commands: impl CommandSink,
+    stop: &Arc<dyn StopHandle>,
+    replay: Option<Box<dyn ReplayControl>>,
+    options: &ConsoleOptions,
+) -> Result<ExitReason, ConsoleError> {
+    run_reloading(snapshots, commands, stop, replay, options, &mut || Ok(options.clone()))
+}
+
+/// The same, with what reads theme and keys again when the process is sent SIGUSR1. Nothing else of the options changes
+/// then, and a key table that is not usable leaves the present one in force.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_reloading(
     mut snapshots: impl SnapshotSource,
     mut commands: impl CommandSink,
     stop: &Arc<dyn StopHandle>,
     replay: Option<Box<dyn ReplayControl>>,
     options: &ConsoleOptions,
+    reload: &mut Reload<'_>,
 ) -> Result<ExitReason, ConsoleError> {
     let keys = KeyMap::new(&options.keys)?;
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
@@ -42,7 +61,7 @@ pub fn run(
     let (sender, heard) = crossbeam_channel::unbounded();
     let input = InputThread::start(keys.clone(), Arc::clone(stop), sender).map_err(ConsoleError::Terminal)?;
     let view = ViewState { mouse: options.mouse, ..ViewState::default() };
-    let wires = Wires { snapshots: &mut snapshots, commands: &mut commands, stop: stop.as_ref(), replay };
+    let wires = Wires { snapshots: &mut snapshots, commands: &mut commands, stop: stop.as_ref(), replay, reload };
     let mut runner = Runner::new(App::new(keys, view), look, options, wires, guard, signals);
     let reason = runner.run(&heard, &input);
     // The terminal is given back first, so that what is told next is read.

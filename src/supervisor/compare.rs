@@ -4,13 +4,12 @@
 //! by its path alone, where a movement space is known. Nothing here decides.
 
 use super::{Mode, Supervisor};
-use crate::body::{Joint, PerSide, Side};
-use crate::geometry::{Point, polyline_length};
+use crate::body::Side;
+use crate::geometry::polyline_length;
 use crate::modelling::stick::{Space, StickFit};
-use crate::modelling::{ArmSpace, Mixture};
 use crate::planning::Reach;
 use crate::sequencing::{Stage, Trial};
-use crate::snapshot::{EllipseView, Shared, StrategyRow, StrategyView};
+use crate::snapshot::{StrategyRow, StrategyView};
 use crate::strategy::{IterationSummary, StrategyKind};
 use std::collections::BTreeMap;
 
@@ -143,30 +142,6 @@ impl Supervisor {
             ..row
         }
     }
-
-    /// The movement space as ellipses, the same for the whole trial.
-    pub(super) fn show_space(&mut self) {
-        let spaces = self.setup.space.as_ref().map(|space| &space.arms);
-        let ellipses = PerSide::from_fn(|side| spaces.map(|arms| ellipses(arms.get(side))).unwrap_or_default());
-        for (side, ellipses) in ellipses.iter() {
-            self.view.sides.get_mut(side).path.ellipses = Shared::new(ellipses.clone());
-        }
-    }
-}
-
-fn ellipses(space: &ArmSpace) -> Vec<EllipseView> {
-    let of_joint = |joint: Joint| {
-        let components = space.joint(joint).map(Mixture::components).unwrap_or_default();
-        components.iter().map(move |component| EllipseView {
-            joint,
-            weight: component.weight(),
-            mean: Point::from(*component.mean()),
-            covariance: std::array::from_fn(|row| {
-                std::array::from_fn(|column| component.covariance().get((row, column)).copied().unwrap_or(0.0))
-            }),
-        })
-    };
-    Joint::DRESSED.into_iter().flat_map(of_joint).collect()
 }
 
 #[cfg(test)]

@@ -60,7 +60,8 @@ impl Supervisor {
             Command::SelectProfile(_) | Command::SelectGarment(_) => {
                 Err("profile and garment are chosen when valet is started: --profile".into())
             }
-            Command::RecordMovement { .. } | Command::SignCheck(_) | Command::SetRecording(_) => {
+            Command::SignCheck(side) => self.begin_sign_check(now, *side),
+            Command::RecordMovement { .. } | Command::SetRecording(_) => {
                 self.obey_shell(now, command)
             }
         }

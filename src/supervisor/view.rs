@@ -56,7 +56,6 @@ impl Supervisor {
         }
         self.view.choices.make_mut().strategies = StrategyKind::ALL.to_vec();
         self.comparison.is_due();
-        self.show_space();
         self.show_steps();
         self.show_settings();
     }

@@ -35,7 +35,8 @@ pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option
         Action::Enable if robot.is_some_and(|robot| robot.enabled) => Some("enabled already"),
         Action::Disable if robot.is_some_and(|robot| !robot.enabled) => Some("disabled already"),
         _ if phase.is_running() && prepares(action) => Some("only before a trial"),
-        Action::Tare | Action::SignCheck if phase.moves() => Some("only when the arms are still"),
+        Action::SignCheck if phase.is_running() => Some("only before a trial"),
+        Action::Tare if phase.moves() => Some("only when the arms are still"),
         _ if is_replay(action) && snapshot.watermark != Watermark::Replay => Some("only in a replay"),
         _ => None,
     }

@@ -3,6 +3,7 @@
 use crate::console::StopHandle;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
+use ratatui::buffer::Buffer;
 use ratatui::crossterm::cursor::Show;
 use ratatui::crossterm::event::{DisableMouseCapture, EnableMouseCapture};
 use ratatui::crossterm::terminal::{
@@ -10,6 +11,7 @@ use ratatui::crossterm::terminal::{
     enable_raw_mode,
 };
 use ratatui::crossterm::{execute, queue};
+use ratatui::layout::{Position, Rect};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::panic::{PanicHookInfo, set_hook, take_hook};
 use std::sync::Arc;
@@ -27,6 +29,9 @@ const BUFFER: usize = 1 << 16;
 #[derive(Debug)]
 pub(super) struct TerminalGuard {
     screen: Screen,
+    /// What the terminal shows, and a buffer to draw the next frame into.
+    shown: Buffer,
+    spare: Buffer,
 }
 
 impl TerminalGuard {
@@ -35,7 +40,7 @@ impl TerminalGuard {
         take(mouse)?;
         let writer = BufWriter::with_capacity(BUFFER, io::stdout());
         match Terminal::new(CrosstermBackend::new(writer)) {
-            Ok(screen) => Ok(Self { screen }),
+            Ok(screen) => Ok(Self { screen, shown: Buffer::default(), spare: Buffer::default() }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -43,11 +48,22 @@ impl TerminalGuard {
         }
     }
 
-    /// Draws one frame as one synchronized update: no terminal shows half of it.
-    pub(super) fn draw(&mut self, render: impl FnOnce(&mut ratatui::Frame<'_>)) -> io::Result<()> {
+    /// Draws one frame as one synchronized update: no terminal shows half of it. A frame that is the same as the last one is
+    /// not sent at all.
+    pub(super) fn draw(&mut self, render: impl FnOnce(Rect, &mut Buffer)) -> io::Result<()> {
+        let area = Rect::from((Position::ORIGIN, self.screen.size()?));
+        let mut next = std::mem::take(&mut self.spare);
+        next.resize(area);
+        next.reset();
+        render(area, &mut next);
+        if next == self.shown {
+            self.spare = next;
+            return Ok(());
+        }
         queue!(self.screen.backend_mut(), BeginSynchronizedUpdate)?;
-        let drawn = self.screen.draw(render).map(|_| ());
+        let drawn = self.screen.draw(|frame| frame.buffer_mut().clone_from(&next)).map(|_| ());
         execute!(self.screen.backend_mut(), EndSynchronizedUpdate)?;
+        self.spare = std::mem::replace(&mut self.shown, next);
         drawn
     }
 
@@ -58,6 +74,7 @@ impl TerminalGuard {
 
     /// Forgets what is on the terminal, so that the next frame draws everything.
     pub(super) fn clear(&mut self) -> io::Result<()> {
+        self.shown = Buffer::default();
         self.screen.clear()
     }
 

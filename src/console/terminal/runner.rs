@@ -1,5 +1,6 @@
 //! The console's loop: takes events and snapshots in, carries reactions out, and draws when something changed.
 
+use super::Reload;
 use super::guard::TerminalGuard;
 use super::signals::Signals;
 use crate::body::Side;
@@ -7,6 +8,7 @@ use crate::command::Command;
 use crate::console::app::{App, Reaction};
 use crate::console::draw::{Scene, draw};
 use crate::console::input::{Heard, InputThread};
+use crate::console::keymap::KeyMap;
 use crate::console::theme::Look;
 use crate::console::{
     CommandSink, ConsoleError, ConsoleOptions, ExitReason, ReplayControl, SnapshotSource, StopHandle,
@@ -47,6 +49,7 @@ pub(super) struct Wires<'a> {
     pub(super) commands: &'a mut dyn CommandSink,
     pub(super) stop: &'a dyn StopHandle,
     pub(super) replay: Option<Box<dyn ReplayControl>>,
+    pub(super) reload: &'a mut Reload<'a>,
 }
 
 /// The loop with all that it owns.
@@ -200,6 +203,9 @@ impl<'a> Runner<'a> {
         if self.signals.terminated() {
             return Some(ExitReason::Terminated);
         }
+        if self.signals.take_reload() {
+            self.reload(input);
+        }
         if self.signals.take_resumed() {
             self.resized();
             if self.guard.clear().is_err() {
@@ -213,6 +219,25 @@ impl<'a> Runner<'a> {
             return self.carry_out(reactions, input);
         }
         None
+    }
+
+    /// Theme and keys anew, as the file says now. What is not usable changes nothing and is said.
+    fn reload(&mut self, input: &InputThread) {
+        self.dirty = true;
+        let options = (self.wires.reload)();
+        let read = options.and_then(|options| {
+            let keys = KeyMap::new(&options.keys).map_err(|error| error.to_string())?;
+            Ok((options, keys))
+        });
+        match read {
+            Ok((options, keys)) => {
+                self.look = Look::from_options(&options, |name| std::env::var(name).ok());
+                input.use_keys(keys.clone());
+                self.app.keys = keys;
+                self.app.inform("theme and keys were read again");
+            }
+            Err(reason) => self.app.complain(format!("theme and keys stay as they are: {reason}")),
+        }
     }
 
     fn resized(&mut self) {
@@ -238,10 +263,7 @@ impl<'a> Runner<'a> {
         let aged = silent.then(|| Snapshot { now: self.snapshot.now + silence, ..self.snapshot.clone() });
         let live = aged.as_ref().unwrap_or(&self.snapshot);
         let scene = Scene { live, view: &self.app.view, look: self.look, keys: &self.app.keys };
-        let drawn = self.guard.draw(|frame| {
-            let area = frame.area();
-            draw(&scene, area, frame.buffer_mut());
-        });
+        let drawn = self.guard.draw(|area, buffer| draw(&scene, area, buffer));
         drawn.is_err().then_some(ExitReason::TerminalLost)
     }
 }

@@ -1,6 +1,6 @@
 //! Signals as flags: what the system asks of a process that has the screen.
 
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGTERM, SIGTSTP};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGTERM, SIGTSTP, SIGUSR1};
 use signal_hook::{flag, low_level};
 use std::io;
 use std::sync::Arc;
@@ -13,6 +13,7 @@ pub(super) struct Signals {
     hang_up: Arc<AtomicBool>,
     suspend: Arc<AtomicBool>,
     resumed: Arc<AtomicBool>,
+    reload: Arc<AtomicBool>,
     registered: Vec<signal_hook::SigId>,
 }
 
@@ -27,7 +28,8 @@ impl Signals {
         };
         let (terminate, hang_up) = (catch(SIGTERM)?, catch(SIGHUP)?);
         let (suspend, resumed) = (catch(SIGTSTP)?, catch(SIGCONT)?);
-        Ok(Self { terminate, hang_up, suspend, resumed, registered })
+        let reload = catch(SIGUSR1)?;
+        Ok(Self { terminate, hang_up, suspend, resumed, reload, registered })
     }
 
     /// True where the process was told to end.
@@ -48,6 +50,11 @@ impl Signals {
     /// True once for each time that the process was continued.
     pub(super) fn take_resumed(&self) -> bool {
         self.resumed.swap(false, Ordering::Relaxed)
+    }
+
+    /// True once for each time that the configuration is to be read again.
+    pub(super) fn take_reload(&self) -> bool {
+        self.reload.swap(false, Ordering::Relaxed)
     }
 
     /// Stops this process until the shell continues it.
