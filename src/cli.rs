@@ -7,6 +7,7 @@ pub mod exit;
 pub mod output;
 mod planning;
 
+mod anew;
 mod bench;
 mod config;
 mod console;
@@ -22,6 +23,7 @@ mod recording;
 mod replay;
 mod report;
 mod reproduce;
+mod screen;
 mod session;
 mod shell;
 mod sim;

@@ -56,6 +56,11 @@ pub trait CommandSink {
     /// # Errors
     /// Why the command could not be handed over, in words.
     fn send(&mut self, command: Command) -> Result<(), String>;
+
+    /// True where what was asked can only be had by beginning anew: the console is left then.
+    fn begins_anew(&self) -> bool {
+        false
+    }
 }
 
 impl<F: FnMut(Command) -> Result<(), String>> CommandSink for F {
@@ -101,6 +106,8 @@ pub trait ReplayControl {
 pub enum ExitReason {
     /// The operator quit.
     Quit,
+    /// The program begins anew with what was chosen: another person or garment.
+    BeginAnew,
     /// The operator quit after an emergency stop.
     QuitAfterStop,
     /// The process was told to end (SIGTERM): the arms were asked to hold.

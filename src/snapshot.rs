@@ -100,7 +100,7 @@ impl Watermark {
 /// The emergency stop by software, from the key to the robot's own word.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StopView {
-    /// True from the request until a reset that the robot confirmed.
+    /// True from the request until Start: nothing moves meanwhile.
     pub latched: bool,
     /// When the operator, a node or a verdict asked for it.
     pub requested_at: Option<Stamp>,
@@ -108,6 +108,9 @@ pub struct StopView {
     pub sent_at: Option<Stamp>,
     /// When the robot first said that it is stopped.
     pub confirmed_at: Option<Stamp>,
+    /// True from the robot's answer to Reset until Start: the way back has begun, and Enable and Start are left.
+    #[serde(default)]
+    pub is_reset: bool,
     /// Who or what asked, in words.
     pub cause: String,
 }
@@ -117,6 +120,8 @@ pub struct StopView {
 pub enum StopPhase {
     /// Nothing is stopped.
     Clear,
+    /// Reset: the robot is no longer stopped, and nothing moves before Enable and Start.
+    Reset,
     /// Asked for, and still within the time in which the robot should have answered.
     Requested,
     /// The robot says that it is stopped.
@@ -135,6 +140,9 @@ impl StopView {
     pub fn phase(&self, now: Stamp) -> StopPhase {
         if !self.latched {
             return StopPhase::Clear;
+        }
+        if self.is_reset {
+            return StopPhase::Reset;
         }
         if self.confirmed_at.is_some() {
             return StopPhase::Confirmed;

@@ -2,16 +2,18 @@
 
 mod lines;
 
+use super::anew::{Choosing, Chosen};
 use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::planning::choose_planner;
 use super::recording::RecordArguments;
+use super::screen::ScreenArguments;
 use super::session::{Opening, Session};
 use super::sim::ros_failure;
 use crate::command::Origin;
 use crate::config::{Key, LoadedProfile, Places, Settings};
-use crate::console::{ConsoleOptions, ExitReason};
+use crate::console::{ConsoleOptions, ExitReason, Reload};
 use crate::ros::Node;
 use crate::snapshot::{Snapshot, Watermark};
 use crate::strategy::StrategyKind;
@@ -27,6 +29,9 @@ pub(super) struct Arguments {
     /// The person: a name or a file.
     #[arg(long)]
     profile: Option<String>,
+    /// The garment, by its name in the profile; the first one there where none is named.
+    #[arg(long)]
+    garment: Option<String>,
     /// The strategy that a trial begins with.
     #[arg(long)]
     strategy: Option<String>,
@@ -43,6 +48,8 @@ pub(super) struct Arguments {
     record: RecordArguments,
     #[command(flatten)]
     key: KeyArguments,
+    #[command(flatten)]
+    screen: ScreenArguments,
     /// Begin with the paths that earlier trials of this person learned.
     #[arg(long)]
     warm_start: bool,
@@ -72,7 +79,8 @@ struct Prepared {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(node) = &arguments.watch {
         let settings = Settings::find(arguments.config.as_deref(), &Places::of_this_machine());
-        return super::watch::run(node, settings.map_err(Failure::configuration)?.console());
+        let options = arguments.screen.over(settings.map_err(Failure::configuration)?.console());
+        return super::watch::run(node, &options);
     }
     // What was typed is checked first: a wrong option needs no master to be found.
     let mut prepared = prepare(arguments)?;
@@ -89,10 +97,13 @@ fn operate(arguments: &Arguments, node: Node, prepared: Prepared) -> Result<(), 
     let strategy = setup.settings.strategy;
     let recording = arguments.record.of_trials(&Places::of_this_machine().trials, settings.recording());
     let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: arguments.dry_run })?;
+    let chosen = Chosen::default();
     let reason = if arguments.headless {
         lines::follow(&session, strategy, arguments.seed(), arguments.json).map(|()| ExitReason::Quit)
     } else {
-        show(&session, settings.console())
+        let options = arguments.screen.over(settings.console());
+        let mut reader = arguments.screen.reader(arguments.config.clone());
+        show(&session, &options, &mut reader, &chosen)
     };
     let recorded = session.close();
     if let Some(trial) = recorded.as_deref().filter(|_| person.keeps_learned() && !arguments.dry_run) {
@@ -101,6 +112,9 @@ fn operate(arguments: &Arguments, node: Node, prepared: Prepared) -> Result<(), 
             // How the trial ended is what the exit code tells.
             super::output::complain(&failure);
         }
+    }
+    if matches!(reason, Ok(ExitReason::BeginAnew)) {
+        return super::anew::begin(&chosen);
     }
     conclude(reason, recorded.as_deref().filter(|_| !arguments.json))
 }
@@ -144,6 +158,7 @@ fn prepare(arguments: &Arguments) -> Result<Prepared, Failure> {
     let mut setup = settings.setup_for(&person, arguments.seed(), watermark).map_err(Failure::configuration)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
     choose_planner(&mut setup, arguments.planner.as_deref())?;
+    choose_garment(&mut setup, &person, arguments.garment.as_deref())?;
     setup.settings.warm_start |= arguments.warm_start;
     Ok(Prepared { settings, person, setup, key })
 }
@@ -158,11 +173,27 @@ pub(super) fn choose_strategy(setup: &mut Setup, name: Option<&str>) -> Result<(
     Ok(())
 }
 
-/// Runs the screen until the operator leaves it.
-pub(super) fn show(session: &Session, options: &ConsoleOptions) -> Result<ExitReason, Failure> {
+/// Puts the garment that was asked for into a setup.
+pub(super) fn choose_garment(setup: &mut Setup, person: &LoadedProfile, name: Option<&str>) -> Result<(), Failure> {
+    let Some(name) = name else { return Ok(()) };
+    let found = person.profile.garment(Some(name)).map(|garment| garment.name.clone());
+    let known = || person.profile.garments.iter().map(|garment| garment.name.as_str()).collect::<Vec<_>>().join(", ");
+    let unknown = || Failure::Configuration(format!("--garment {name} is none of this profile's: {}", known()));
+    setup.garment = found.ok_or_else(unknown)?;
+    Ok(())
+}
+
+/// Runs the screen until the operator leaves it, or has chosen another person or garment.
+pub(super) fn show(
+    session: &Session,
+    options: &ConsoleOptions,
+    reload: &mut Reload<'_>,
+    chosen: &Chosen,
+) -> Result<ExitReason, Failure> {
     let mut viewer = session.viewer();
     let newest = move || -> Option<Snapshot> { viewer() };
-    crate::console::run(newest, session.asker(Origin::OperatorKey), &session.stopper(), None, options)
+    let commands = Choosing { inner: session.asker(Origin::OperatorKey), chosen: Chosen::clone(chosen) };
+    crate::console::run_reloading(newest, commands, &session.stopper(), None, options, reload)
         .map_err(Failure::configuration)
 }
 
@@ -173,6 +204,6 @@ pub(super) fn conclude(reason: Result<ExitReason, Failure>, recorded: Option<&st
     }
     match reason? {
         ExitReason::QuitAfterStop => Err(Failure::OperatorStop("the emergency stop was used".into())),
-        ExitReason::Quit | ExitReason::Terminated | ExitReason::TerminalLost => Ok(()),
+        ExitReason::Quit | ExitReason::BeginAnew | ExitReason::Terminated | ExitReason::TerminalLost => Ok(()),
     }
 }

@@ -6,6 +6,7 @@ use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::recording::{RecordArguments, warn};
+use super::screen::ScreenArguments;
 use super::sim::GarmentModel;
 use crate::config::{LoadedProfile, Places, Settings};
 use crate::headless::{Report, ScriptedOperator, TrialResult, VirtualTrial};
@@ -52,6 +53,8 @@ pub(super) struct Arguments {
     pub(super) record: RecordArguments,
     #[command(flatten)]
     pub(super) key: KeyArguments,
+    #[command(flatten)]
+    pub(super) screen: ScreenArguments,
     /// Begin with the paths that earlier trials of this person learned.
     #[arg(long)]
     pub(super) warm_start: bool,
@@ -73,6 +76,7 @@ impl Default for Arguments {
             json: false,
             record: RecordArguments::default(),
             key: KeyArguments::default(),
+            screen: ScreenArguments::default(),
             warm_start: false,
             port: None,
         }

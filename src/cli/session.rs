@@ -9,14 +9,14 @@ use super::sim::ros_failure;
 use crate::assembly::SwitchRequest;
 use crate::body::{PerSide, Side};
 use crate::command::{Command, CommandOutcome, CommandReceipt, Origin};
-use crate::config::LoadedProfile;
+use crate::config::{LoadedProfile, Places, profile_names};
 use crate::engine::stop::StopThread;
 use crate::engine::{Engine, Inbox, Outlet, SharedSnapshot};
 use crate::kinematics::{JointVector, RobotModel, Scene};
 use crate::record::{Recorder, RecorderNotice};
 use crate::robot::{GuardSettings, GuardedLimb, GuardedPair};
 use crate::ros::{Commander, DepthWatcher, LinkSettings, Node, RobotLink, RosLimb, Showing, TopicReport, leave};
-use crate::snapshot::{Freshness, RecorderView, Shared, Snapshot, TopicHealth};
+use crate::snapshot::{Choices, Freshness, RecorderView, Shared, Snapshot, TopicHealth};
 use crate::supervisor::{Effect, Input, LinkEvent, PlanOrder, PlannerKind, Setup, Supervisor};
 use crate::time::Stamp;
 use std::sync::{Arc, OnceLock, Weak};
@@ -63,6 +63,7 @@ struct ShellView {
     link: Arc<RobotLink>,
     recorder: Option<Arc<Recorder>>,
     master: String,
+    choices: Choices,
 }
 
 impl ShellView {
@@ -71,6 +72,8 @@ impl ShellView {
         snapshot.topics = Shared::new(topics.iter().map(|report| topic_health(snapshot.now, report)).collect());
         snapshot.master.uri.clone_from(&self.master);
         snapshot.recorder = self.recorder.as_deref().map(recorder_view).unwrap_or_default();
+        let strategies = snapshot.choices.strategies.clone();
+        snapshot.choices = Shared::new(Choices { strategies, ..self.choices.clone() });
         snapshot.checks = Shared::new(snapshot.check_list());
     }
 }
@@ -171,8 +174,11 @@ impl Session {
             link.watch_depth(depth_recorder(Arc::downgrade(recorder)));
         }
         let link = Arc::new(link);
+        let garments = opening.person.profile.garments.iter().map(|garment| garment.name.clone()).collect();
+        let profiles = profile_names(&Places::of_this_machine());
+        let choices = Choices { profiles, garments, ..Choices::default() };
         let master = node.master().to_owned();
-        let shell = ShellView { link: Arc::clone(&link), recorder: recorder.clone(), master };
+        let shell = ShellView { link: Arc::clone(&link), recorder: recorder.clone(), master, choices };
         let outlet = RobotOutlet {
             limbs,
             commander: link.commander(),

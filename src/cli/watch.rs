@@ -68,8 +68,8 @@ impl OwnStop {
         }
         if !self.view.latched {
             let cause = "a console that watches".to_owned();
-            let (at, sent) = (Some(facts.now), Some(facts.now));
-            self.view = StopView { latched: true, requested_at: at, sent_at: sent, confirmed_at: None, cause };
+            let at = Some(facts.now);
+            self.view = StopView { latched: true, requested_at: at, sent_at: at, cause, ..StopView::default() };
         }
         if facts.robot_stopped && self.view.confirmed_at.is_none() {
             self.view.confirmed_at = Some(facts.now);

@@ -308,6 +308,7 @@ fn stop(snapshot: &mut Snapshot, at: Moment) {
         latched: true,
         requested_at: Some(at.ago(3000)),
         sent_at: Some(at.ago(2999)),
+        is_reset: false,
         confirmed_at: Some(at.ago(2988)),
         cause: "the operator's key".into(),
     };
@@ -326,6 +327,7 @@ fn fail(snapshot: &mut Snapshot, at: Moment) {
         latched: true,
         requested_at: Some(at.ago(700)),
         sent_at: Some(at.ago(699)),
+        is_reset: false,
         confirmed_at: None,
         cause: "safety: right force 38.2 N is beyond 35 N".into(),
     };

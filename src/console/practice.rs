@@ -18,6 +18,7 @@ struct State {
     phase: TrialPhase,
     enabled: bool,
     stopped_at: Option<Stamp>,
+    is_reset: bool,
     receipts: History<ReceiptLine>,
 }
 
@@ -42,7 +43,7 @@ impl Practice {
     pub fn new() -> Self {
         let epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let receipts = History::new(100);
-        let state = State { phase: TrialPhase::Dressing, enabled: true, stopped_at: None, receipts };
+        let state = State { phase: TrialPhase::Dressing, enabled: true, stopped_at: None, is_reset: false, receipts };
         Self {
             started: Instant::now(),
             epoch: Stamp::ZERO + epoch,
@@ -58,7 +59,8 @@ impl Practice {
     fn snapshot(&self) -> Snapshot {
         let now = self.now();
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        if self.latch.load(Ordering::SeqCst) && state.stopped_at.is_none() {
+        if self.latch.load(Ordering::SeqCst) && (state.stopped_at.is_none() || state.is_reset) {
+            state.is_reset = false;
             (state.stopped_at, state.enabled, state.phase) = (Some(now), false, TrialPhase::Stopped);
         }
         let mut snapshot = fixture_at(Situation::Live, Moment(now));
@@ -66,7 +68,7 @@ impl Practice {
         snapshot.trial.phase = state.phase;
         snapshot.receipts = state.receipts.clone();
         if let Some(robot) = &mut snapshot.robot.state {
-            (robot.enabled, robot.stopped) = (state.enabled, state.stopped_at.is_some());
+            (robot.enabled, robot.stopped) = (state.enabled, state.stopped_at.is_some() && !state.is_reset);
         }
         if let Some(at) = state.stopped_at {
             let confirmed = at + CONFIRMATION;
@@ -75,6 +77,7 @@ impl Practice {
                 requested_at: Some(at),
                 sent_at: Some(at),
                 confirmed_at: (now >= confirmed).then_some(confirmed),
+                is_reset: state.is_reset,
                 cause: "practice".into(),
             };
         }
@@ -86,6 +89,8 @@ impl Practice {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let next = match command {
             Command::Hold => Some(TrialPhase::Holding),
+            // After a stop the trial holds first, as with a robot.
+            Command::Start if state.stopped_at.is_some() => Some(TrialPhase::Holding),
             Command::Continue | Command::Start | Command::GoAhead => Some(TrialPhase::Dressing),
             Command::Withdraw => Some(TrialPhase::Withdrawing),
             Command::Abort => Some(TrialPhase::Ended),
@@ -95,8 +100,9 @@ impl Practice {
         match command {
             Command::Reset => {
                 self.latch.store(false, Ordering::SeqCst);
-                (state.stopped_at, state.phase) = (None, TrialPhase::Holding);
+                state.is_reset = true;
             }
+            Command::Start => (state.stopped_at, state.is_reset) = (None, false),
             Command::Enable => state.enabled = true,
             Command::Disable => state.enabled = false,
             _ => {}
@@ -138,11 +144,14 @@ mod tests {
         assert_ne!(stopped.stop.phase(stopped.now), StopPhase::Clear);
         practice.send(Command::Reset).unwrap();
         let reset = practice.newest().unwrap();
-        assert_eq!(reset.stop.phase(reset.now), StopPhase::Clear);
+        assert_eq!(reset.stop.phase(reset.now), StopPhase::Reset);
         assert!(!reset.robot.state.unwrap().enabled && !reset.trial.phase.moves());
         practice.send(Command::Enable).unwrap();
         assert!(!practice.newest().unwrap().trial.phase.moves());
         practice.send(Command::Start).unwrap();
+        let started = practice.newest().unwrap();
+        assert!(started.stop.phase(started.now) == StopPhase::Clear && !started.trial.phase.moves());
+        practice.send(Command::Continue).unwrap();
         assert!(practice.newest().unwrap().trial.phase.moves());
     }
 }

@@ -279,3 +279,32 @@ fn the_keys_of_a_replay_drive_it_and_nothing_else_is_asked() {
     let live = text_of(&drawn(&fixture(Situation::Live), &ViewState::default(), COLOUR, (120, 40)));
     assert!(!live.contains("slower"), "keys of a replay are not offered in a trial: {live}");
 }
+
+#[test]
+fn after_the_reset_of_a_latched_stop_enable_and_then_start_are_offered() {
+    // As the supervisor shows it: latched until Start, with the robot's own stop already clear.
+    let mut reset = fixture(Situation::Stopped);
+    reset.stop.is_reset = true;
+    let robot = reset.robot.state.as_mut().unwrap();
+    (robot.stopped, robot.enabled) = (false, false);
+    let mut app = app(Screen::Trial);
+    assert_eq!(press(&mut app, &reset, &["E", "y", "enter"]), [Reaction::Send(Command::Enable)]);
+    assert_eq!(press(&mut app, &reset, &["S", "y", "enter"]), [], "not before it is enabled");
+    assert_eq!(press(&mut app, &reset, &["R"]), [], "it is reset already");
+    assert!(app.view.dialog.is_none());
+    let screen = text_of(&drawn(&reset, &app.view, COLOUR, (120, 40)));
+    assert!(screen.contains("STOP RESET") && screen.contains("Enable and Start are left"), "{screen}");
+    reset.robot.state.as_mut().unwrap().enabled = true;
+    assert_eq!(press(&mut app, &reset, &["p", "y", "enter"]), [], "a hold is not left before Start");
+    assert_eq!(press(&mut app, &reset, &["S", "y", "enter"]), [Reaction::Send(Command::Start)]);
+}
+
+#[test]
+fn the_banner_says_what_became_of_a_stop_at_every_width() {
+    let stopped = fixture(Situation::Stopped);
+    for width in [40, 60, 80, 100, 120] {
+        let text = text_of(&drawn(&stopped, &ViewState::default(), COLOUR, (width, 24)));
+        assert!(text.contains("confirmed by the robot after"), "{width}\n{text}");
+        assert!(text.contains("red button: "), "{width}\n{text}");
+    }
+}

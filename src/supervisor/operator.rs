@@ -61,9 +61,7 @@ impl Supervisor {
                 Err("profile and garment are chosen when valet is started: --profile".into())
             }
             Command::SignCheck(side) => self.begin_sign_check(now, *side),
-            Command::RecordMovement { .. } | Command::SetRecording(_) => {
-                self.obey_shell(now, command)
-            }
+            Command::RecordMovement { .. } | Command::SetRecording(_) => self.obey_shell(now, command),
         }
     }
 

@@ -34,7 +34,8 @@ struct Push {
 impl Push {
     /// The push in a change of force, where it is one and along one axis.
     fn of(change: &Vector) -> Option<Self> {
-        let (axis, newtons) = change.iter().copied().enumerate().max_by(|one, two| one.1.abs().total_cmp(&two.1.abs()))?;
+        let (axis, newtons) =
+            change.iter().copied().enumerate().max_by(|one, two| one.1.abs().total_cmp(&two.1.abs()))?;
         let others = change.iter().enumerate().filter(|(other, _)| *other != axis);
         let next = others.map(|(_, value)| value.abs()).fold(0.0, f64::max);
         let is_clear = newtons.abs() >= PUSH_NEWTONS && newtons.abs() >= CLEARLY * next;
@@ -45,10 +46,11 @@ impl Push {
     fn words(self, side: Side) -> String {
         let axis = ["x", "y", "z"].get(self.axis).copied().unwrap_or("?");
         let sign = if self.newtons < 0.0 { '-' } else { '+' };
-        let (away, back) = [("away from the robot", "towards the robot"), ("to the robot's left", "to its right"), ("up", "down")]
-            .get(self.axis)
-            .copied()
-            .unwrap_or_default();
+        let (away, back) =
+            [("away from the robot", "towards the robot"), ("to the robot's left", "to its right"), ("up", "down")]
+                .get(self.axis)
+                .copied()
+                .unwrap_or_default();
         let meant = if self.newtons < 0.0 { back } else { away };
         format!(
             "the {side} gripper felt {sign}{:.1} N along {axis}: right where you pushed it {meant}; if you pushed the other \

@@ -8,6 +8,7 @@ use crate::body::{BodyPose, Joint, PerSide, Side};
 use crate::command::{CommandReceipt, Origin};
 use crate::geometry::Point;
 use crate::modelling::{ArmSpace, Mixture};
+use crate::safety::StopPhase;
 use crate::sequencing::{Next, Order, Stage, Step, Trial};
 use crate::snapshot::{
     Detection, EllipseView, ForceSample, Freshness, IterationView, Level, LogLine, MotionNotice, Outcome, ReceiptLine,
@@ -88,6 +89,7 @@ impl Supervisor {
         self.view.stop.requested_at = Some(now);
         self.view.stop.sent_at = Some(now);
         self.view.stop.confirmed_at = None;
+        self.view.stop.is_reset = false;
         cause.clone_into(&mut self.view.stop.cause);
         self.mark(now, None, TimelineKind::Stop);
         self.enter(now, TrialPhase::Stopped);
@@ -97,6 +99,8 @@ impl Supervisor {
         let stop = self.protection.stop();
         self.view.stop.latched = stop.is_latched();
         self.view.stop.confirmed_at = stop.confirmed_at();
+        self.view.stop.is_reset =
+            matches!(stop.phase(), StopPhase::Disabled | StopPhase::Enabling | StopPhase::Enabled);
         if !stop.is_latched() && self.view.trial.phase == TrialPhase::Stopped {
             let phase = if self.mode == Mode::Held { TrialPhase::Holding } else { TrialPhase::Idle };
             self.enter(now, phase);

@@ -141,7 +141,7 @@ fn wait_until(what: &str, mut holds: impl FnMut() -> bool) -> Result<(), Failure
 fn console(frames_per_second: u32) -> Result<(Terminal, tempfile::TempDir), Failure> {
     let folder = tempfile::tempdir().map_err(Failure::fault)?;
     let settings = folder.path().join("settings.toml");
-    let text = format!("[console]\nframes_per_second = {frames_per_second}\n");
+    let text = format!("version = 1\n[console]\nframes_per_second = {frames_per_second}\n");
     std::fs::write(&settings, text).map_err(Failure::fault)?;
     let arguments = ["console", "--no-record", "--config"].map(String::from).into_iter();
     let arguments: Vec<String> = arguments.chain([settings.display().to_string()]).collect();
@@ -214,7 +214,9 @@ fn one_stop(
         }
         wanted(newest)
     };
-    let is_clear = |seen: &Snapshot| seen.robot.state.is_some_and(|robot| !robot.stopped) && !seen.stop.latched;
+    let is_clear = |seen: &Snapshot| {
+        seen.robot.state.is_some_and(|robot| !robot.stopped) && (!seen.stop.latched || seen.stop.is_reset)
+    };
     wait_until("the robot without a stop", || state(&is_clear))?;
     // At every phase of the beat and of the frames.
     thread::sleep(Duration::from_millis(index as u64 * 7 % 40));
@@ -222,7 +224,9 @@ fn one_stop(
     let typed = Instant::now();
     terminal.press(b" ")?;
     let heard = ear.next(PATIENCE).ok_or_else(|| Failure::Fault("a stop was not heard".into()))?;
-    wait_until("the confirmed stop", || state(&|seen| seen.stop.confirmed_at.is_some() && seen.stop.latched))?;
+    wait_until("the confirmed stop", || {
+        state(&|seen| seen.stop.confirmed_at.is_some() && seen.stop.latched && !seen.stop.is_reset)
+    })?;
     // The console is told by the same snapshots, a frame later.
     thread::sleep(Duration::from_millis(200));
     terminal.press(b"Rreset\r")?;

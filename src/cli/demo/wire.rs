@@ -1,6 +1,7 @@
 //! The demo over the wire: the simulator as a process of its own with a master in it, and the real node beside it.
 
 use super::{Arguments, CONTINUES, LONGEST_TRIAL, person_and_setup, print_report, verdict};
+use crate::cli::anew::{self, Chosen};
 use crate::cli::console::{choose_strategy, conclude, show};
 use crate::cli::exit::Failure;
 use crate::cli::output::Output;
@@ -9,6 +10,7 @@ use crate::cli::session::{Opening, Session};
 use crate::cli::sim::ros_failure;
 use crate::command::Origin;
 use crate::config::Places;
+use crate::console::ExitReason;
 use crate::headless::{Report, ScriptedOperator, TrialResult};
 use crate::ros::{Node, environment, node};
 use crate::snapshot::Outcome;
@@ -38,9 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return start_anew();
     };
     let simulator = start_simulator(arguments, port)?;
-    let result = supervise(arguments);
-    drop(simulator);
-    result
+    supervise(arguments, simulator)
 }
 
 /// The variables by which nodes find each other are read once, at the start: this program begins anew with them.
@@ -81,7 +81,7 @@ fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failur
     Ok(simulator)
 }
 
-fn supervise(arguments: &Arguments) -> Result<(), Failure> {
+fn supervise(arguments: &Arguments, simulator: Simulator) -> Result<(), Failure> {
     let (person, mut setup, settings) = person_and_setup(arguments, arguments.seed)?;
     choose_strategy(&mut setup, arguments.strategy.as_deref())?;
     let strategy = setup.settings.strategy;
@@ -95,8 +95,13 @@ fn supervise(arguments: &Arguments) -> Result<(), Failure> {
         }
         return verdict(&result?);
     }
-    let reason = show(&session, settings.console());
+    let (options, chosen) = (arguments.screen.over(settings.console()), Chosen::default());
+    let reason = show(&session, &options, &mut arguments.screen.reader(None), &chosen);
     let recorded = session.close();
+    if matches!(reason, Ok(ExitReason::BeginAnew)) {
+        drop(simulator);
+        return anew::begin(&chosen);
+    }
     conclude(reason, recorded.as_deref())
 }
 

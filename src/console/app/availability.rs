@@ -20,12 +20,18 @@ pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option
     }
     let phase = snapshot.trial.phase;
     let robot = snapshot.robot.fresh(snapshot.now);
-    let stopped = snapshot.stop.phase(snapshot.now) != StopPhase::Clear || robot.is_some_and(|robot| robot.stopped);
+    let way_back = snapshot.stop.phase(snapshot.now);
+    let stopped = robot.is_some_and(|robot| robot.stopped) || !matches!(way_back, StopPhase::Clear | StopPhase::Reset);
+    let needs_start = way_back == StopPhase::Reset && !stopped;
     match action {
+        Action::Reset if needs_start => Some("reset already: enable, then start"),
         Action::Reset => (!stopped).then_some("nothing is stopped"),
         _ if stopped && leaves_a_stop(action) => Some("stopped: reset first"),
-        Action::Start if phase.is_running() && phase != TrialPhase::Holding => Some("a trial runs"),
+        Action::Start if phase.is_running() && !needs_start => Some("a trial runs"),
         Action::Start => needs_enabled(snapshot),
+        _ if needs_start && leaves_a_stop(action) && action != Action::Enable => {
+            Some("after a stop: enable, then start")
+        }
         _ if in_a_trial(action) && !phase.is_running() => Some("no trial runs"),
         Action::GoAhead | Action::NextStep | Action::NextIteration if phase != TrialPhase::Waiting => {
             Some("nothing waits for it")

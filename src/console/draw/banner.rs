@@ -78,6 +78,11 @@ pub(super) fn stop_state(scene: &Scene<'_>) -> StopState {
             format!("{} STOP NOT CONFIRMED", glyphs.fault),
             format!("NOT CONFIRMED after {waited}: PRESS THE RED BUTTON"),
         ),
+        StopPhase::Reset => {
+            let enabled = live.robot.fresh(live.now).is_some_and(|robot| robot.enabled);
+            let left = if enabled { "Start is left" } else { "Enable and Start are left" };
+            state(Role::Late, format!("{} STOP RESET", glyphs.late), format!("nothing moves: {left}"))
+        }
         StopPhase::Requested => state(Role::Stop, stopped, format!("requested {waited} ago, not confirmed yet")),
         StopPhase::Confirmed => {
             let took =
@@ -103,7 +108,9 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
     let key = scene.keys.first_key(crate::console::Action::Stop);
     let red = button(scene.live);
     if state.role != Role::Stop {
-        let text = if area.width < 70 {
+        let text = if scene.live.stop.is_reset {
+            format!("{} · {} · {key}: STOP · red button {red}", state.word, state.headline)
+        } else if area.width < 70 {
             format!("{} · {key}: STOP · red button {red}", state.word)
         } else if area.width < 100 {
             format!("{} · {key}: EMERGENCY STOP (software) · red button: {red}", state.word)
@@ -113,16 +120,7 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
         put(buffer, area, 0, &line(scene.look, state.role, text));
         return 1;
     }
-    let stop = &scene.live.stop;
-    let asked = stop.requested_at.map_or_else(String::new, |at| format!(" requested {} ·", clock(at)));
-    let sent = stop.sent_at.zip(stop.requested_at).map(|(sent, asked)| seconds(sent.since(asked).as_secs_f64()));
-    let sent = sent.map_or_else(String::new, |sent| format!(" · sent after {sent}"));
-    let cause = if stop.cause.is_empty() { "not known" } else { stop.cause.as_str() };
-    let rows = [
-        format!("{}: EMERGENCY STOP (software){asked} {}", state.word, state.headline),
-        format!(" cause: {cause}{sent} · red button: {red}"),
-        " No software on a PC is safety-rated: the red button is. Reset, Enable and Start are three acts.".into(),
-    ];
+    let rows = stop_rows(scene, &state, area.width, red);
     let mut taken = 0;
     for text in rows {
         let width = usize::from(area.width);
@@ -130,4 +128,27 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
         taken += 1;
     }
     taken
+}
+
+/// What a stop says, the most important first, in as many words as the terminal has room for.
+fn stop_rows(scene: &Scene<'_>, state: &StopState, width: u16, red: &str) -> [String; 3] {
+    let stop = &scene.live.stop;
+    let asked = stop.requested_at.map_or_else(String::new, |at| format!(" · requested {}", clock(at)));
+    let sent = stop.sent_at.zip(stop.requested_at).map(|(sent, asked)| seconds(sent.since(asked).as_secs_f64()));
+    let sent = sent.map_or_else(String::new, |sent| format!(" · sent after {sent}"));
+    let cause = if stop.cause.is_empty() { "not known" } else { stop.cause.as_str() };
+    let (word, headline) = (&state.word, &state.headline);
+    if width < 70 {
+        return [
+            format!("{word} {headline}"),
+            format!(" red button: {red} · cause: {cause}"),
+            " By software: not safety-rated.".into(),
+        ];
+    }
+    let acts = if width < 100 { "" } else { " Reset, Enable and Start are three acts." };
+    [
+        format!("{word}: EMERGENCY STOP (software) {headline}"),
+        format!(" red button: {red}{asked}{sent} · cause: {cause}"),
+        format!(" No software on a PC is safety-rated: the red button is.{acts}"),
+    ]
 }

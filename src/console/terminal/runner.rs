@@ -166,6 +166,9 @@ impl<'a> Runner<'a> {
                     if let Err(reason) = self.wires.commands.send(command.clone()) {
                         self.app.complain(format!("{command}: could not be handed over: {reason}"));
                     }
+                    if self.wires.commands.begins_anew() {
+                        return Some(ExitReason::BeginAnew);
+                    }
                     Ok(())
                 }
                 Reaction::Replay(request) => {
