@@ -119,7 +119,7 @@ fn it_draws_resizes_stops_at_the_key_and_gives_the_terminal_back() {
     session.wait_for("3.1:");
     session.terminal.resize(PtySize { rows: 1, cols: 1, pixel_width: 0, pixel_height: 0 }).unwrap();
     session.terminal.resize(PtySize { rows: 40, cols: 120, pixel_width: 0, pixel_height: 0 }).unwrap();
-    session.wait_for("(table");
+    session.wait_for("(steps");
     session.press(" ");
     session.wait_for("confirmed by the robot");
     session.press("qy\r");
@@ -150,6 +150,18 @@ fn a_terminal_that_goes_away_ends_the_program() {
         }
         thread::sleep(Duration::from_millis(20));
     }
+}
+
+#[test]
+fn sigusr1_reads_theme_and_keys_again_and_the_stop_key_stays() {
+    let mut session = Session::practise();
+    session.signal("USR1");
+    session.wait_for("again");
+    session.press(" ");
+    session.wait_for("confirmed by the robot");
+    session.press("qy\r");
+    let (_, seen) = session.end();
+    assert_restored(&seen);
 }
 
 #[test]
