@@ -298,13 +298,3 @@ fn after_the_reset_of_a_latched_stop_enable_and_then_start_are_offered() {
     assert_eq!(press(&mut app, &reset, &["p", "y", "enter"]), [], "a hold is not left before Start");
     assert_eq!(press(&mut app, &reset, &["S", "y", "enter"]), [Reaction::Send(Command::Start)]);
 }
-
-#[test]
-fn the_banner_says_what_became_of_a_stop_at_every_width() {
-    let stopped = fixture(Situation::Stopped);
-    for width in [40, 60, 80, 100, 120] {
-        let text = text_of(&drawn(&stopped, &ViewState::default(), COLOUR, (width, 24)));
-        assert!(text.contains("confirmed by the robot after"), "{width}\n{text}");
-        assert!(text.contains("red button: "), "{width}\n{text}");
-    }
-}
