@@ -48,7 +48,7 @@ fn learning(criterion: &mut Criterion) {
 fn between_control_steps(criterion: &mut Criterion) {
     let context = ArmContext {
         initial: [Point::new(0.3, 0.1, 1.0), Point::new(0.0, 0.0, 1.0), Point::new(-0.3, 0.2, 1.0)],
-        space: Some(ArmSpace { hand: four(), elbow: four(), shoulder: four() }),
+        space: Some(ArmSpace { hand: four(), elbow: four(), shoulder: four(), whole: None }),
         seed: 1,
     };
     let contact = Contact { position: Point::new(0.15, 0.05, 1.0), resistance: Vector::new(0.0, 0.0, 7.0) };

@@ -171,6 +171,9 @@ pub fn build(
         StrategyKind::Gmm => Box::new(FixedPath::from_space(space()?, initial)),
         StrategyKind::Force => Box::new(ForceStrategy::new(initial, learning)),
         StrategyKind::Multimodal => {
+            if settings.multimodal.whole_arm && space()?.whole.is_none() {
+                return Err(StrategyError::NoWholeArm);
+            }
             Box::new(MultimodalStrategy::new(context, space()?, learning, &settings.multimodal))
         }
         StrategyKind::Kernel => Box::new(kernel_step(initial, learning, &settings.kernel)),

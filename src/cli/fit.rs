@@ -113,6 +113,8 @@ fn fit_arm(
         hand: joint(Joint::Hand, hand)?,
         elbow: joint(Joint::Elbow, elbow)?,
         shoulder: joint(Joint::Shoulder, shoulder)?,
+        // Rows of a recording need not be of one moment: nothing is said about which hand goes with which elbow.
+        whole: None,
     })
 }
 

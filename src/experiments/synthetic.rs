@@ -232,6 +232,7 @@ impl Scene {
             hand: joint(0.0, components[0])?,
             elbow: joint(2.7, components[1])?,
             shoulder: joint(5.2, components[2])?,
+            whole: None,
         };
         let middle = Point::from(space.elbow.sample(&mut random));
         let initial = [space.hand.mode(), Point::new(middle.x, middle.y, 0.0), space.shoulder.mode()];

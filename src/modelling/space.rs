@@ -4,6 +4,7 @@ use super::fit::{FitError, FitSettings, fit};
 use super::mixture::Mixture;
 use crate::body::{Joint, PerSide};
 use crate::geometry::{Point, Vector};
+use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 /// Where the joints of one arm can be, each joint a mixture of its own as in the thesis.
@@ -16,6 +17,10 @@ pub struct ArmSpace {
     pub elbow: Mixture,
     /// The shoulder.
     pub shoulder: Mixture,
+    /// Hand, elbow and shoulder in one mixture, where they were recorded together: unlike the thesis' three, it knows which
+    /// hand goes with which elbow, and so the limbs' lengths.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whole: Option<Mixture<9>>,
 }
 
 impl ArmSpace {
@@ -26,7 +31,16 @@ impl ArmSpace {
     pub fn fit(places: &[Vec<Vector>; 3], settings: &FitSettings, seed: u64) -> Result<Self, FitError> {
         let [hand, elbow, shoulder] = places;
         let mixture = |joint: &[Vector]| fit(joint, settings, seed).map(|fitted| fitted.mixture);
-        Ok(Self { hand: mixture(hand)?, elbow: mixture(elbow)?, shoulder: mixture(shoulder)? })
+        let (hand, elbow, shoulder) = (mixture(hand)?, mixture(elbow)?, mixture(shoulder)?);
+        Ok(Self { hand, elbow, shoulder, whole: fit_together(places, settings, seed)? })
+    }
+
+    /// The two ends of each limb in one mixture: hand and elbow, elbow and shoulder. `None` where the joints were not
+    /// recorded together.
+    #[must_use]
+    pub fn limbs_together(&self) -> Option<[Mixture<6>; 2]> {
+        let whole = self.whole.as_ref()?;
+        Some([whole.marginal([0, 1, 2, 3, 4, 5]).ok()?, whole.marginal([3, 4, 5, 6, 7, 8]).ok()?])
     }
 
     /// The mixture of a joint; `None` where the thesis models none (wrist, forearm, upper arm).
@@ -55,6 +69,21 @@ impl ArmSpace {
         let (hand, elbow, shoulder) = (self.hand.mode(), self.elbow.mode(), self.shoulder.mode());
         [hand, elbow_on_the_arm(&self.elbow, &hand, &elbow, &shoulder, lengths), shoulder]
     }
+}
+
+/// One mixture over all three joints; `None` where they were not seen equally often, so not together.
+fn fit_together(places: &[Vec<Vector>; 3], settings: &FitSettings, seed: u64) -> Result<Option<Mixture<9>>, FitError> {
+    let [hand, elbow, shoulder] = places;
+    if hand.len() != elbow.len() || elbow.len() != shoulder.len() {
+        return Ok(None);
+    }
+    let joints = hand.iter().zip(elbow).zip(shoulder);
+    let postures: Vec<SVector<f64, 9>> = joints
+        .map(|((hand, elbow), shoulder)| {
+            SVector::from_iterator(hand.iter().chain(elbow.iter()).chain(shoulder.iter()).copied())
+        })
+        .collect();
+    fit(&postures, settings, seed).map(|fitted| Some(fitted.mixture))
 }
 
 /// By how much the elbow may miss the arm's lengths before it is moved (thesis section 5.2.2).

@@ -4,6 +4,7 @@
 
 use super::mixture::Mixture;
 use crate::geometry::{Point, Vector};
+use nalgebra::SVector;
 use std::f64::consts::TAU;
 
 /// Two points closer than this have no direction.
@@ -25,8 +26,27 @@ pub struct Limb<'a> {
     pub start: &'a Mixture,
     /// The mixture of the end that it passes last.
     pub end: &'a Mixture,
+    /// Both ends in one mixture, where they were modelled together: it knows which start goes with which end. Where there
+    /// is none, the ends are independent, as in the thesis.
+    pub together: Option<&'a Mixture<6>>,
     /// The distance between the two joints in metres.
     pub length: f64,
+}
+
+impl Limb<'_> {
+    /// The logarithm of the joint density of the limb's two ends.
+    #[must_use]
+    pub fn log_density(&self, start: &Point, end: &Point) -> f64 {
+        match self.together {
+            Some(together) => together.log_density_at(&both_ends(start, end)),
+            None => self.start.log_density(start) + self.end.log_density(end),
+        }
+    }
+}
+
+/// The coordinates of both ends, one after the other.
+fn both_ends(start: &Point, end: &Point) -> SVector<f64, 6> {
+    SVector::from_iterator(start.iter().chain(end.iter()).copied())
 }
 
 /// Whether a problem lives in the plane z = 0 (the thesis' synthetic data) or in space (the robot).
@@ -108,7 +128,7 @@ impl StickFit {
                 let share = f64::from(place) / f64::from(self.places - 1);
                 let start = point - direction * (limb.length * share);
                 let end = start + direction * limb.length;
-                let score = limb.start.log_density(&start) + limb.end.log_density(&end);
+                let score = limb.log_density(&start, &end);
                 result.score = result.score.max(score - best_possible);
                 result.inside = result.inside
                     || (limb.start.contains(&start.coords, region) && limb.end.contains(&end.coords, region));

@@ -90,7 +90,7 @@ mod tests {
     fn scene() -> (Reach, [Point; 3], Vec<Point>) {
         let at = |x: f64| Mixture::planar([(1.0, Vector2::new(x, 0.0), Matrix2::identity() * 0.05)]).unwrap();
         let joints = [Point::origin(), Point::new(3.0, 0.0, 0.0), Point::new(6.0, 0.0, 0.0)];
-        let space = ArmSpace { hand: at(0.0), elbow: at(3.0), shoulder: at(6.0) };
+        let space = ArmSpace { hand: at(0.0), elbow: at(3.0), shoulder: at(6.0), whole: None };
         let arch = [0.0, 0.9, 1.2, 0.9, 0.0].iter().enumerate();
         let comfort = arch.map(|(index, y)| Point::new(1.5 * index as f64, *y, 0.0)).collect();
         (Reach::new(space, &joints, StickFit::new(Space::Planar)), joints, comfort)

@@ -45,8 +45,9 @@ impl Reach {
     pub fn at(&self, point: &Point) -> Reachability {
         let [hand, elbow, shoulder] = self.space.dressed();
         let limbs = [(hand, elbow), (elbow, shoulder)].into_iter().zip(self.lengths).zip(self.best);
-        let judged = limbs
-            .map(|(((start, end), length), best)| self.fit.reachability(point, &Limb { start, end, length }, best));
+        let judged = limbs.map(|(((start, end), length), best)| {
+            self.fit.reachability(point, &Limb { start, end, together: None, length }, best)
+        });
         let none = Reachability { score: FLOOR, inside: false };
         judged.fold(none, |best, next| Reachability {
             score: best.score.max(next.score),

@@ -41,7 +41,7 @@ impl GoalSearch {
         }
         let weigh = |end: &Point, middle: &Point| {
             let start = other_end(end, middle, limb.length)?;
-            Some(limb.end.log_density(end) + limb.start.log_density(&start))
+            Some(limb.log_density(&start, end))
         };
         if self.include_current {
             chosen.log_density = weigh(end, middle);
@@ -102,7 +102,7 @@ mod tests {
                 guard_distance: parameters["min_dist"].as_f64().unwrap_or(0.4),
                 space: Space::Planar,
             };
-            let limb = Limb { start: &start, end: &end, length: case["length"].as_f64().unwrap() };
+            let limb = Limb { start: &start, end: &end, together: None, length: case["length"].as_f64().unwrap() };
             let mut random = SplitMix64::new(case["seed"].as_u64().unwrap());
             let chosen = search.choose(&point(&case["mid"]), &point(&case["end"]), &limb, &mut random);
             assert!((chosen.position - point(&case["result"])).norm() < 1e-9);
@@ -121,7 +121,7 @@ mod tests {
         let best = start.log_density(&start.mode()) + end.log_density(&end.mode());
         let fit = StickFit::new(Space::Planar);
         for case in file["reachability"].as_array().unwrap() {
-            let limb = Limb { start: &start, end: &end, length: case["lengths"][0].as_f64().unwrap() };
+            let limb = Limb { start: &start, end: &end, together: None, length: case["lengths"][0].as_f64().unwrap() };
             let reached = fit.reachability(&point(&case["x"]), &limb, best);
             assert!((reached.score - case["score"].as_f64().unwrap()).abs() < 1e-6, "{reached:?} {case}");
             assert_eq!(reached.inside, case["inside"].as_bool().unwrap());

@@ -45,6 +45,11 @@ pub enum StrategyError {
         /// Which strategy.
         strategy: StrategyKind,
     },
+    /// The strategy is to weigh the whole arm, and the movement space knows its joints only one by one.
+    #[error(
+        "`multimodal.whole_arm` needs a movement space of the whole arm; record the person's movement again, or switch it off"
+    )]
+    NoWholeArm,
     /// There is nothing more to learn.
     #[error("the strategy has finished ({finish}); start a new trial to learn further")]
     Finished {

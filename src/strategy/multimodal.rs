@@ -12,7 +12,7 @@ use super::{
 };
 use crate::geometry::{Finite, Point};
 use crate::modelling::stick::Limb;
-use crate::modelling::{ArmSpace, SplitMix64};
+use crate::modelling::{ArmSpace, Mixture, SplitMix64};
 use crate::planning::GoalSearch;
 use crate::planning::line;
 
@@ -22,6 +22,8 @@ pub struct MultimodalStrategy {
     learner: Learner,
     settings: MultimodalSettings,
     space: ArmSpace,
+    /// Both ends of each limb in one mixture, where that is asked for.
+    together: Option<[Mixture<6>; 2]>,
     lengths: [f64; 2],
     initial_elbow: Point,
     random: SplitMix64,
@@ -58,6 +60,7 @@ impl MultimodalStrategy {
             learner: Learner::new(learning),
             settings: settings.clone(),
             space: space.clone(),
+            together: settings.whole_arm.then(|| space.limbs_together()).flatten(),
             lengths: [(elbow - hand).norm(), (shoulder - elbow).norm()],
             initial_elbow: elbow,
             random: SplitMix64::new(context.seed),
@@ -139,7 +142,8 @@ impl MultimodalStrategy {
         let [hand, elbow, shoulder] = self.space.dressed();
         let (start, end) = if under_way.limb == 0 { (hand, elbow) } else { (elbow, shoulder) };
         let length = *self.lengths.get(under_way.limb)?;
-        let limb = Limb { start, end, length };
+        let together = self.together.as_ref().and_then(|limbs| limbs.get(under_way.limb));
+        let limb = Limb { start, end, together, length };
         let before = under_way.end;
         let chosen = search.choose(&under_way.pass.current, &before, &limb, &mut self.random);
         chosen.draw?;

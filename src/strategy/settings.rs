@@ -98,6 +98,9 @@ pub struct MultimodalSettings {
     pub guard_radii: f64,
     /// Whether the shoulder stays where it is.
     pub pin_last: bool,
+    /// Whether a limb's two ends are weighed by one mixture over the whole arm in place of the thesis' independent joints;
+    /// needs a movement space whose joints were recorded together.
+    pub whole_arm: bool,
     /// In a plane or in space.
     pub space: Space,
 }
@@ -111,6 +114,7 @@ impl Default for MultimodalSettings {
             include_current: true,
             guard_radii: 2.0,
             pin_last: true,
+            whole_arm: false,
             space: Space::Spatial,
         }
     }

@@ -78,8 +78,12 @@ fn algorithm_3_makes_the_paths_of_the_vectors() {
     for case in cases {
         let scene = cases.iter().find(|other| other["scene_seed"] == case["scene_seed"]).unwrap();
         let mixtures = scene["gmms"].as_array().unwrap();
-        let space =
-            ArmSpace { hand: mixture(&mixtures[0]), elbow: mixture(&mixtures[1]), shoulder: mixture(&mixtures[2]) };
+        let space = ArmSpace {
+            hand: mixture(&mixtures[0]),
+            elbow: mixture(&mixtures[1]),
+            shoulder: mixture(&mixtures[2]),
+            whole: None,
+        };
         let joints = points(&scene["joints"]);
         let context = ArmContext {
             initial: [joints[0], joints[1], joints[2]],
@@ -89,6 +93,7 @@ fn algorithm_3_makes_the_paths_of_the_vectors() {
         let parameters = &case["params"];
         let learning = LearningSettings { step: 0.3, energy_threshold: 0.01, ..settings(parameters).0 };
         let multimodal = MultimodalSettings {
+            whole_arm: false,
             draws: 20,
             end_radius: 0.5,
             middle_radius: 0.2,
@@ -162,6 +167,7 @@ fn arm_space() -> ArmSpace {
         hand: around(Vector::new(0.80, -0.30, 0.10)),
         elbow: around(Vector::new(0.78, -0.02, 0.12)),
         shoulder: around(Vector::new(0.62, 0.15, 0.25)),
+        whole: None,
     }
 }
 
@@ -310,4 +316,42 @@ fn a_path_of_dense_nodes_takes_as_long_as_the_thesis_path_and_heeds_contacts_bet
         let between = start + (next - start) * 0.4;
         assert!(strategy.heeds(&between), "{kind}");
     }
+}
+
+/// Places of an arm that swings about its elbow as a whole: hand and elbow go together.
+fn swinging_arm() -> [Vec<Vector>; 3] {
+    let mut random = crate::modelling::SplitMix64::new(5);
+    let mut places = <[Vec<Vector>; 3]>::default();
+    for _ in 0..400 {
+        let swing = Vector::new(0.0, 0.0, 0.08) * random.normal();
+        let joints = [
+            Vector::new(0.80, -0.30, 0.10) + swing,
+            Vector::new(0.78, -0.02, 0.12) + swing,
+            Vector::new(0.62, 0.15, 0.25),
+        ];
+        for (list, joint) in places.iter_mut().zip(joints) {
+            list.push(joint + Vector::new(random.normal(), random.normal(), random.normal()) * 0.01);
+        }
+    }
+    places
+}
+
+#[test]
+fn the_whole_arm_stands_in_for_the_stick_where_it_is_asked_for_and_known() {
+    let mut settings = StrategySettings::default();
+    settings.multimodal.whole_arm = true;
+    let refused = build(StrategyKind::Multimodal, &settings, &robot_context(Some(arm_space())));
+    assert!(refused.is_err_and(|error| error.to_string().contains("whole arm")));
+    let space = ArmSpace::fit(&swinging_arm(), &crate::modelling::FitSettings::default(), 1).unwrap();
+    let [forearm, _] = space.limbs_together().unwrap();
+    let limb =
+        crate::modelling::stick::Limb { start: &space.hand, end: &space.elbow, together: Some(&forearm), length: 0.28 };
+    let (hand, elbow) = (Point::new(0.80, -0.30, 0.22), Point::new(0.78, -0.02, 0.24));
+    let together = limb.log_density(&hand, &elbow) - limb.log_density(&hand, &(elbow - Vector::z() * 0.24));
+    assert!(together > 20.0, "a high hand goes with a high elbow, not with a low one: {together}");
+    let mut strategy = build(StrategyKind::Multimodal, &settings, &robot_context(Some(space))).unwrap();
+    strategy.begin().unwrap();
+    let contact = Contact { position: Point::new(0.79, -0.2, 0.11), resistance: Vector::new(0.0, 0.0, -6.0) };
+    let reaction = strategy.resisted(&contact);
+    assert!(reaction.changes.iter().any(|change| matches!(change.rule, Rule::GoalChosen { .. })), "{reaction:?}");
 }
