@@ -156,6 +156,9 @@ fn a_terminal_that_goes_away_ends_the_program() {
 fn sigusr1_reads_theme_and_keys_again_and_the_stop_key_stays() {
     let mut session = Session::practise();
     session.signal("USR1");
+    // Only cells that change are written, so a text may come in pieces: another size has the whole frame drawn anew.
+    thread::sleep(Duration::from_millis(500));
+    session.terminal.resize(PtySize { rows: 40, cols: 119, pixel_width: 0, pixel_height: 0 }).unwrap();
     session.wait_for("again");
     session.press(" ");
     session.wait_for("confirmed by the robot");
