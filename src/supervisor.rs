@@ -55,6 +55,9 @@ struct Yielding {
     force: Vector,
 }
 
+/// The engine's beat: 100 Hz.
+const BEAT: std::time::Duration = std::time::Duration::from_millis(10);
+
 /// The share of its speed at which a motion goes on under a verdict of slow.
 const SLOW_RATIO: f64 = 0.5;
 
@@ -140,7 +143,10 @@ impl Supervisor {
     }
 
     fn tick(&mut self, now: Stamp) {
-        let span = self.last_tick.replace(now).map_or(std::time::Duration::ZERO, |last| now.since(last));
+        let last = self.last_tick.replace(now).unwrap_or(now);
+        // A clock that went back says nothing about how long it was: the beat came as it always does, and an arm that moves
+        // must neither stop short for one beat nor start anew.
+        let span = now.checked_since(last).unwrap_or(BEAT);
         let in_trial = self.mode != Mode::Idle;
         let inputs = self.protection.judge(now, in_trial);
         let force = if in_trial { self.protection.judge_force() } else { Verdict::clear() };

@@ -23,3 +23,11 @@ fn s_40_braking_that_was_cut_off_does_not_come_later() {
     // The robot's state falls silent while the arms brake; when it comes back, nothing may move by itself.
     assert_eq!(torture(63).violation, None);
 }
+
+#[test]
+fn a_clock_that_goes_back_neither_stops_an_arm_for_a_beat_nor_hurries_it() {
+    // In these trials the computer's clock jumps back while an arm moves; one beat without a step was a jolt.
+    for seed in [500_602, 500_641, 500_849, 500_881] {
+        assert_eq!(torture(seed).violation, None, "seed {seed}");
+    }
+}
