@@ -7,10 +7,10 @@ use crate::geometry::Vector;
 use crate::kinematics::{JointVector, PairMotion, Setpoint};
 use std::time::Duration;
 
-/// How fast the ratio of motion time to real time may change, per second: half speed is reached within 0.4 s. A joint at
-/// speed v is accelerated by v times this beside what was planned; at the highest joint speed (0.75 rad/s) that is 0.94 rad/s²,
-/// and with the planned 2 rad/s² it stays below the 3 rad/s² at which the guard refuses a step.
-const RATIO_PER_SECOND: f64 = 1.25;
+/// How fast the ratio of motion time to real time may change, per second: half speed is reached within 0.5 s. A joint at
+/// speed v is accelerated by v times this beside what was planned; at the highest joint speed (1 rad/s) that is 1 rad/s², and
+/// with the planned 2 rad/s² it stays below the 4 rad/s² at which the guard refuses a step.
+const RATIO_PER_SECOND: f64 = 1.0;
 
 /// The same while a halt makes haste: slowly enough that braking outweighs it from the first beat on.
 const HALT_RATIO_PER_SECOND: f64 = 0.5;

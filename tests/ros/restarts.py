@@ -131,14 +131,17 @@ class Restarts(unittest.TestCase):
         self.assertIn("success: True", tool("rosservice", "call", "/valet/hold"))
         self.goes_on()
 
-    def test_3_a_simulator_that_dies_holds_and_the_trial_goes_on_with_the_next_one(self):
+    def test_3_a_simulator_that_dies_holds_and_the_next_one_begins_anew(self):
         since = self.node.mark()
         self.simulator.process.kill()
         self.says_why(since)
         type(self).simulator = self.start_simulator()
-        # A robot that was switched off comes back disabled.
+        # A robot that was switched off comes back disabled, and its arms are elsewhere: the trial that was under way cannot go
+        # on from there, but the next one can begin.
         self.node.until_accepted("enable", "enable the robot")
-        self.goes_on()
+        self.node.until_accepted("abort", "abort the trial")
+        self.node.until_accepted("start", "start the trial")
+        self.moves()
 
     def test_4_rosnode_kill_ends_both(self):
         said = tool("rosnode", "kill", "/valet", "/simulated_baxter")

@@ -35,7 +35,7 @@ const FIRST_STEP: f64 = 0.05;
 const RANGE_TOLERANCE: f64 = 1e-3;
 /// By this factor a joint's acceleration may exceed its limit: it is the second difference of setpoints, which a moving ratio of
 /// time bends a little.
-const ACCELERATION_TOLERANCE: f64 = 1.5;
+const ACCELERATION_TOLERANCE: f64 = 2.0;
 
 #[derive(Clone, Copy, Debug)]
 struct Sent {
