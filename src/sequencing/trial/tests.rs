@@ -1,6 +1,7 @@
 //! A trial with strategies that are told what to answer.
 
 use super::*;
+use crate::kinematics::waiting_place;
 use crate::strategy::{Finish, LearnedPath, Reaction, StrategyKind};
 use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
 
