@@ -50,6 +50,13 @@ impl Row {
         self.with(format!("{name}_mean"), mean).with(format!("{name}_sd"), deviation)
     }
 
+    /// Adds the cells of another row.
+    #[must_use]
+    pub fn and(mut self, other: &Self) -> Self {
+        self.0.extend_from_slice(&other.0);
+        self
+    }
+
     /// The value of a name.
     #[must_use]
     pub fn value(&self, name: &str) -> Option<&Value> {

@@ -3,7 +3,7 @@
 //!
 //! Lengths have no unit there; the thesis' thresholds and steps are used as they are. All in the plane z = 0.
 
-use crate::geometry::{Point, Vector, closest_on_polyline};
+use crate::geometry::{Point, Vector};
 use crate::modelling::{ArmSpace, Mixture, MixtureError, SplitMix64};
 use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
@@ -75,26 +75,57 @@ impl Pair {
     }
 }
 
-/// How many points of a curve share a bounding ball.
-const GROUP: usize = 10;
+/// How many segments of a curve share a bounding ball.
+const GROUP: usize = 5;
 
 /// A polyline that is asked for its closest point very often.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     points: Vec<Point>,
-    /// Balls round pieces of the curve: a piece whose ball is farther than the closest point so far is passed over.
-    balls: Vec<(Point, f64)>,
+    pieces: Vec<Piece>,
+}
+
+/// Some segments of a curve and a ball round them: a piece whose ball is farther than what was found is passed over.
+#[derive(Clone, Debug, PartialEq)]
+struct Piece {
+    centre: Point,
+    radius: f64,
+    /// Start, way to the end, and its squared length.
+    segments: Vec<(Point, Vector, f64)>,
+}
+
+impl Piece {
+    fn new(points: &[Point]) -> Self {
+        let centre = Point::from(points.iter().map(|point| point.coords).sum::<Vector>() / points.len() as f64);
+        let radius = points.iter().map(|point| (point - centre).norm()).fold(0.0, f64::max);
+        let ends = points.iter().zip(points.iter().skip(1).chain(points.iter().take(usize::from(points.len() == 1))));
+        let segments = ends.map(|(start, end)| (*start, end - start, (end - start).norm_squared())).collect();
+        Self { centre, radius, segments }
+    }
+
+    /// The displacement from its closest point, and its squared length.
+    fn displacement(&self, point: &Point) -> (Vector, f64) {
+        let offsets = self.segments.iter().map(|(start, along, length_squared)| {
+            let from_start = point - start;
+            let share =
+                if *length_squared > 0.0 { (from_start.dot(along) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+            point - (start + along * share)
+        });
+        offsets.map(|offset| (offset, offset.norm_squared())).fold((Vector::zeros(), f64::INFINITY), closer)
+    }
+}
+
+/// The closer of two displacements with their squared lengths; the first of equal ones.
+fn closer(best: (Vector, f64), next: (Vector, f64)) -> (Vector, f64) {
+    if next.1 < best.1 { next } else { best }
 }
 
 impl Curve {
     /// A curve through points.
     #[must_use]
     pub fn new(points: Vec<Point>) -> Self {
-        let balls = pieces(&points).map(|piece| {
-            let centre = Point::from(piece.iter().map(|point| point.coords).sum::<Vector>() / piece.len() as f64);
-            (centre, piece.iter().map(|point| (point - centre).norm()).fold(0.0, f64::max))
-        });
-        Self { balls: balls.collect(), points }
+        let pieces = groups(&points).map(Piece::new).collect();
+        Self { points, pieces }
     }
 
     /// Its points.
@@ -106,27 +137,27 @@ impl Curve {
     /// The displacement from the closest point: the exact resistance of a synthetic problem.
     #[must_use]
     pub fn displacement(&self, point: &Point) -> Vector {
-        let mut best = Vector::zeros();
-        // No point of a ball is farther than its centre and its radius together, so the curve is at least that close.
-        let bounds = self.balls.iter().map(|(centre, radius)| (point - centre).norm() + radius);
-        let mut distance = bounds.fold(f64::INFINITY, f64::min) * (1.0 + 1e-12);
-        for (piece, (centre, radius)) in pieces(&self.points).zip(&self.balls) {
-            let reach = distance + radius;
-            if (point - centre).norm_squared() > reach * reach {
-                continue;
-            }
-            let offset = closest_on_polyline(point, piece).map_or_else(Vector::zeros, |closest| point - closest);
-            if offset.norm_squared() < distance * distance {
-                (best, distance) = (offset, offset.norm());
+        let away = |piece: &Piece| (point - piece.centre).norm_squared();
+        // The piece whose centre is nearest is searched first: after it, hardly another one has to be.
+        let Some(nearest) = self.pieces.iter().min_by(|a, b| away(a).total_cmp(&away(b))) else {
+            return Vector::zeros();
+        };
+        let mut best = nearest.displacement(point);
+        let mut distance = best.1.sqrt();
+        for piece in &self.pieces {
+            let reach = distance + piece.radius;
+            if away(piece) < reach * reach && !std::ptr::eq(piece, nearest) {
+                best = closer(best, piece.displacement(point));
+                distance = best.1.sqrt();
             }
         }
-        best
+        best.0
     }
 }
 
-/// Pieces of a polyline that share their ends.
-fn pieces(points: &[Point]) -> impl Iterator<Item = &[Point]> {
-    let count = points.len().saturating_sub(1).div_ceil(GROUP).max(1);
+/// Groups of points of a polyline that share their ends.
+fn groups(points: &[Point]) -> impl Iterator<Item = &[Point]> {
+    let count = points.len().saturating_sub(1).div_ceil(GROUP).max(usize::from(!points.is_empty()));
     (0..count).filter_map(move |index| {
         let start = index * GROUP;
         points.get(start..(start + GROUP + 1).min(points.len()))
@@ -290,6 +321,7 @@ fn stray(initial: &[Point; 3], deviation: f64, random: &mut SplitMix64) -> Vec<P
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::closest_on_polyline;
 
     #[test]
     fn pairs_repeat_with_their_seed_and_have_the_promised_height() {
@@ -318,6 +350,8 @@ mod tests {
             }
         }
         assert_eq!(Curve::new(Vec::new()).displacement(&Point::origin()), Vector::zeros());
+        let only = Curve::new(vec![Point::new(0.0, 3.0, 0.0)]);
+        assert_eq!(only.displacement(&Point::origin()), Vector::new(0.0, -3.0, 0.0));
     }
 
     #[test]

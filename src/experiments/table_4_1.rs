@@ -155,18 +155,16 @@ fn run_one(contestant: Contestant, set: PairSet, error: SensorError, seed: u64) 
     })
 }
 
-fn row(
-    table: &str,
-    contestant: Contestant,
-    set: PairSet,
-    error: SensorError,
-    (pairs, seed): (u64, u64),
-) -> Result<Row, ExperimentError> {
+/// What is run on the pairs of a set with a sensor.
+type Job = (Contestant, PairSet, SensorError);
+
+/// The row of a job, without the name of a table.
+fn row((contestant, set, error): Job, (pairs, seed): (u64, u64)) -> Result<Row, ExperimentError> {
     let runs = (0..pairs).into_par_iter().map(|index| run_one(contestant, set, error, seed_of(seed, index)));
     let outcomes = runs.collect::<Result<Vec<_>, _>>()?;
     let of = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).collect::<Vec<_>>();
     let converged = outcomes.iter().filter(|outcome| outcome.converged).count();
-    Ok(Row::of(table)
+    Ok(Row::default()
         .with("method", contestant.name())
         .with("set", format!("{set:?}"))
         .with("form", contestant.form())
@@ -196,26 +194,37 @@ fn optimisers(moment: SecondMoment) -> impl Iterator<Item = Contestant> {
 /// # Errors
 /// [`ExperimentError`] where a strategy refuses.
 pub fn run(seed: u64) -> Result<Findings, ExperimentError> {
+    let [sets, sensors] = [jobs_over_sets(), jobs_over_sensors()];
+    // Every job once, though some rows stand in two tables; all of them side by side, so that no core waits for a long one.
+    let others = sensors.iter().filter(|job| !sets.contains(job));
+    let jobs: Vec<Job> = sets.iter().chain(others).copied().collect();
+    let rows = jobs.par_iter().map(|job| row(*job, (PAIRS, seed))).collect::<Result<Vec<_>, _>>()?;
+    let of = |table, wanted: &Job| {
+        let found = jobs.iter().zip(&rows).filter(|(job, _)| *job == wanted);
+        found.map(|(_, row)| Row::of(table).and(row)).collect::<Vec<_>>()
+    };
     let mut findings = Findings::default();
     for contestant in optimisers(SecondMoment::Norm).chain(NODES) {
-        let row = row("4.1", contestant, PairSet::A, SensorError::None, (PAIRS, seed))?;
-        findings.rows.push(beside_the_thesis(row, contestant));
+        let found = of("4.1", &(contestant, PairSet::A, SensorError::None));
+        findings.rows.extend(found.into_iter().map(|row| beside_the_thesis(row, contestant)));
     }
     findings.drawings.push(drawing(&findings.rows));
-    for set in PairSet::ALL {
-        // SGD and momentum have no second moment: their rows of the norm form serve both.
-        let by_axis = optimisers(SecondMoment::Axis).skip(2);
-        for contestant in optimisers(SecondMoment::Norm).chain(by_axis).chain(NODES) {
-            findings.rows.push(row("4.1-sets", contestant, set, SensorError::None, (PAIRS, seed))?);
-        }
-    }
-    for error in SensorError::ALL {
-        for contestant in optimisers(SecondMoment::Norm).chain(NODES) {
-            findings.rows.push(row("4.1-sensors", contestant, PairSet::C, error, (PAIRS, seed))?);
-        }
-    }
+    findings.rows.extend(sets.iter().flat_map(|job| of("4.1-sets", job)));
+    findings.rows.extend(sensors.iter().flat_map(|job| of("4.1-sensors", job)));
     findings.remarks = remarks();
     Ok(findings)
+}
+
+fn jobs_over_sets() -> Vec<Job> {
+    // SGD and momentum have no second moment: their rows of the norm form serve both.
+    let by_axis = || optimisers(SecondMoment::Axis).skip(2);
+    let contestants = || optimisers(SecondMoment::Norm).chain(by_axis()).chain(NODES);
+    PairSet::ALL.into_iter().flat_map(|set| contestants().map(move |one| (one, set, SensorError::None))).collect()
+}
+
+fn jobs_over_sensors() -> Vec<Job> {
+    let contestants = || optimisers(SecondMoment::Norm).chain(NODES);
+    SensorError::ALL.into_iter().flat_map(|error| contestants().map(move |one| (one, PairSet::C, error))).collect()
 }
 
 /// Adds the thesis' own numbers, where it has any.
@@ -284,7 +293,7 @@ mod tests {
     fn adam_errs_least_sgd_is_slowest_and_the_kernel_step_beats_both() {
         let rows: Vec<_> = optimisers(SecondMoment::Norm)
             .chain(NODES)
-            .map(|contestant| row("4.1", contestant, PairSet::A, SensorError::None, (PAIRS, 1)).unwrap())
+            .map(|contestant| row((contestant, PairSet::A, SensorError::None), (PAIRS, 1)).unwrap())
             .collect();
         let of = |name: &str, quantity: &str| {
             rows.iter().find(|row| row.value("method").unwrap() == name).unwrap().number(quantity)
