@@ -1,6 +1,7 @@
 //! How long the force path takes: a sample through the window and through the guard, and one step of the supervisor.
 //!
 //! Run with `cargo bench --bench sensing`. A beat lasts 10 ms and brings two forces, joints, a state and the beat itself.
+#![allow(clippy::expect_used, reason = "a bench that cannot be set up has nothing to measure")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

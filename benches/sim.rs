@@ -4,6 +4,7 @@
 //! criterion time of t for a pass of s seconds is a real-time factor of s / t, which is printed beside it.
 #![allow(missing_docs, reason = "criterion's macros make public items without documentation")]
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up has nothing to measure")]
+#![allow(clippy::print_stdout, reason = "criterion has no column for a factor of real time")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

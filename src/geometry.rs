@@ -3,6 +3,10 @@
 //! Holds only what several rooms share. Frames are named in the documentation of each value: unless it says otherwise,
 //! a point or pose is in the robot's `base` frame (x forward out of the chest, y to the robot's left, z up).
 
+mod curve;
+
+pub use curve::Curve;
+
 use nalgebra::{Isometry3, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 

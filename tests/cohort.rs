@@ -1,5 +1,7 @@
 //! The cohort on the rig and through the supervisor: table 4.2 is run on a rig, and the real trial has to say the same.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail loudly anywhere")]
+
 use std::time::Duration;
 use valet::body::Side;
 use valet::config::{LoadedProfile, Places, Settings};

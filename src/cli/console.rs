@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     /// The strategy that a trial begins with.
     #[arg(long)]
     strategy: Option<String>,
-    /// Who plans the straight lines: built_in or moveit.
+    /// Who plans the straight lines: `built_in` or `moveit`.
     #[arg(long)]
     planner: Option<String>,
     /// Seed of everything random; it is recorded [default: 1].

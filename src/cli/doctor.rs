@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// For how long to listen, in seconds.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=60))]
     seconds: u64,
-    /// Also ask this planner for a short line of each arm, without moving: built_in or moveit.
+    /// Also ask this planner for a short line of each arm, without moving: `built_in` or `moveit`.
     #[arg(long)]
     planner: Option<String>,
 }

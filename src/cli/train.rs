@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     /// The file that the forest is written to.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Folder with own images: NAME.png (16-bit, millimetres), NAME.json (fx, fy, cx, cy, neck_m) and truth/NAME.png
+    /// Folder with own images: NAME.png (16-bit, millimetres), NAME.json (`fx`, `fy`, `cx`, `cy`, `neck_m`) and truth/NAME.png
     /// (8-bit labels); empty/NAME.png and truth/joints.jsonl are used where they are there. Without it people are simulated.
     #[arg(long, value_name = "DIR", conflicts_with = "generic")]
     from: Option<PathBuf>,

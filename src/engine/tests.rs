@@ -286,23 +286,25 @@ fn a_worker_that_dies_stops_the_robot() {
     drop(engine);
 }
 
+/// Whose screen is told nothing until the other end lets go.
+struct Hanging(Receiver<()>);
+impl Outlet for Hanging {
+    fn setpoint(&mut self, _: Stamp, _: Side, _: &JointVector) -> Result<(), String> {
+        Ok(())
+    }
+    fn release(&mut self, _: Side) {}
+    fn surround(&mut self, _: Scene) {}
+    fn plan(&mut self, _: PlanOrder) {}
+    fn switch(&mut self, _: SwitchRequest) {}
+    fn show(&mut self, _: &Snapshot) {
+        let _ = self.0.recv();
+    }
+    fn record(&mut self, _: Stamp, _: &Input, _: &[Effect]) {}
+}
+
 #[test]
 fn a_stop_message_leaves_while_the_worker_hangs() {
     let (release, hanging) = bounded::<()>(0);
-    struct Hanging(Receiver<()>);
-    impl Outlet for Hanging {
-        fn setpoint(&mut self, _: Stamp, _: Side, _: &JointVector) -> Result<(), String> {
-            Ok(())
-        }
-        fn release(&mut self, _: Side) {}
-        fn surround(&mut self, _: Scene) {}
-        fn plan(&mut self, _: PlanOrder) {}
-        fn switch(&mut self, _: SwitchRequest) {}
-        fn show(&mut self, _: &Snapshot) {
-            let _ = self.0.recv();
-        }
-        fn record(&mut self, _: Stamp, _: &Input, _: &[Effect]) {}
-    }
     let (sent, stops) = unbounded();
     let stop = StopThread::start(move || sent.send(()).unwrap_or_default()).unwrap();
     let engine = Engine::start(supervisor(), Box::new(Hanging(hanging)), stop.latch()).unwrap();

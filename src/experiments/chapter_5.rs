@@ -174,7 +174,7 @@ fn run_one(contestant: Contestant, scene: &Scene, seed: u64) -> Result<Outcome, 
     }
     let reach = Reach::new(scene.space.clone(), &scene.initial, StickFit::new(Space::Planar));
     let reached = reach.along(strategy.path(), SPACING);
-    let comfort = comfort(strategy.path(), scene.reference.points(), THRESHOLD, SPACING);
+    let comfort = comfort(strategy.path(), &scene.reference, THRESHOLD, SPACING);
     Ok(Outcome {
         path: strategy.path().to_vec(),
         reach: reached.score,

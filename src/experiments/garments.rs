@@ -28,6 +28,9 @@ struct Felt {
     peak: f64,
 }
 
+/// Direction and length of a displacement, what is felt with the cloth, and with the reduced model.
+type Case = (&'static str, f64, Felt, Felt);
+
 /// Force on the gripper by how far the path is from the liked one, with both models.
 ///
 /// # Errors
@@ -41,7 +44,7 @@ pub fn run(seed: u64) -> Result<Findings, ExperimentError> {
         let offset = Vector::from(direction) * displacement;
         Ok((name, displacement, pass(Backend::Cloth, offset, seed)?, pass(Backend::Reduced, offset, seed)?))
     };
-    let felt: Vec<(&str, f64, Felt, Felt)> = cases
+    let felt: Vec<Case> = cases
         .into_par_iter()
         .map(felt)
         .collect::<Result<_, SimError>>()
@@ -56,13 +59,13 @@ pub fn run(seed: u64) -> Result<Findings, ExperimentError> {
             .with("reduced_newtons_mean", reduced.mean)
     });
     let panels = DIRECTIONS.map(|(name, _)| {
-        let of = |peak: &dyn Fn(&(&str, f64, Felt, Felt)) -> f64| -> Vec<[f64; 2]> {
+        let of = |peak: fn(&Case) -> f64| -> Vec<[f64; 2]> {
             felt.iter().filter(|case| case.0 == name).map(|case| [case.1, peak(case)]).collect()
         };
         let across = Axis::new(format!("elbow's way-point moved {name} (m)"));
         Plot::new("", across, Axis::new("largest force (N)").including(0.0))
-            .with(Layer::line("cloth", of(&|case| case.2.peak)).marked(Marker::Disc))
-            .with(Layer::line("reduced", of(&|case| case.3.peak)).marked(Marker::Ring))
+            .with(Layer::line("cloth", of(|case| case.2.peak)).marked(Marker::Disc))
+            .with(Layer::line("reduced", of(|case| case.3.peak)).marked(Marker::Ring))
     });
     let drawing = Drawing {
         stem: "garments".into(),

@@ -3,7 +3,7 @@
 //!
 //! Lengths have no unit there; the thesis' thresholds and steps are used as they are. All in the plane z = 0.
 
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Curve, Point, Vector};
 use crate::modelling::{ArmSpace, Mixture, MixtureError, SplitMix64};
 use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
@@ -73,95 +73,6 @@ impl Pair {
     pub fn error(&self, path: &[Point]) -> f64 {
         path.iter().map(|point| self.optimal.displacement(point).norm()).sum()
     }
-}
-
-/// How many segments of a curve share a bounding ball.
-const GROUP: usize = 5;
-
-/// A polyline that is asked for its closest point very often.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
-    points: Vec<Point>,
-    pieces: Vec<Piece>,
-}
-
-/// Some segments of a curve and a ball round them: a piece whose ball is farther than what was found is passed over.
-#[derive(Clone, Debug, PartialEq)]
-struct Piece {
-    centre: Point,
-    radius: f64,
-    /// Start, way to the end, and its squared length.
-    segments: Vec<(Point, Vector, f64)>,
-}
-
-impl Piece {
-    fn new(points: &[Point]) -> Self {
-        let centre = Point::from(points.iter().map(|point| point.coords).sum::<Vector>() / points.len() as f64);
-        let radius = points.iter().map(|point| (point - centre).norm()).fold(0.0, f64::max);
-        let ends = points.iter().zip(points.iter().skip(1).chain(points.iter().take(usize::from(points.len() == 1))));
-        let segments = ends.map(|(start, end)| (*start, end - start, (end - start).norm_squared())).collect();
-        Self { centre, radius, segments }
-    }
-
-    /// The displacement from its closest point, and its squared length.
-    fn displacement(&self, point: &Point) -> (Vector, f64) {
-        let offsets = self.segments.iter().map(|(start, along, length_squared)| {
-            let from_start = point - start;
-            let share =
-                if *length_squared > 0.0 { (from_start.dot(along) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-            point - (start + along * share)
-        });
-        offsets.map(|offset| (offset, offset.norm_squared())).fold((Vector::zeros(), f64::INFINITY), closer)
-    }
-}
-
-/// The closer of two displacements with their squared lengths; the first of equal ones.
-fn closer(best: (Vector, f64), next: (Vector, f64)) -> (Vector, f64) {
-    if next.1 < best.1 { next } else { best }
-}
-
-impl Curve {
-    /// A curve through points.
-    #[must_use]
-    pub fn new(points: Vec<Point>) -> Self {
-        let pieces = groups(&points).map(Piece::new).collect();
-        Self { points, pieces }
-    }
-
-    /// Its points.
-    #[must_use]
-    pub fn points(&self) -> &[Point] {
-        &self.points
-    }
-
-    /// The displacement from the closest point: the exact resistance of a synthetic problem.
-    #[must_use]
-    pub fn displacement(&self, point: &Point) -> Vector {
-        let away = |piece: &Piece| (point - piece.centre).norm_squared();
-        // The piece whose centre is nearest is searched first: after it, hardly another one has to be.
-        let Some(nearest) = self.pieces.iter().min_by(|a, b| away(a).total_cmp(&away(b))) else {
-            return Vector::zeros();
-        };
-        let mut best = nearest.displacement(point);
-        let mut distance = best.1.sqrt();
-        for piece in &self.pieces {
-            let reach = distance + piece.radius;
-            if away(piece) < reach * reach && !std::ptr::eq(piece, nearest) {
-                best = closer(best, piece.displacement(point));
-                distance = best.1.sqrt();
-            }
-        }
-        best.0
-    }
-}
-
-/// Groups of points of a polyline that share their ends.
-fn groups(points: &[Point]) -> impl Iterator<Item = &[Point]> {
-    let count = points.len().saturating_sub(1).div_ceil(GROUP).max(usize::from(!points.is_empty()));
-    (0..count).filter_map(move |index| {
-        let start = index * GROUP;
-        points.get(start..(start + GROUP + 1).min(points.len()))
-    })
 }
 
 /// The seed of problem `index` (below 1,000) of the experiment with seed `seed`: no two experiments share a problem.
@@ -321,7 +232,6 @@ fn stray(initial: &[Point; 3], deviation: f64, random: &mut SplitMix64) -> Vec<P
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::closest_on_polyline;
 
     #[test]
     fn pairs_repeat_with_their_seed_and_have_the_promised_height() {
@@ -336,22 +246,6 @@ mod tests {
                 assert!(pair.error(pair.optimal.points()) < 1e-9);
             }
         }
-    }
-
-    #[test]
-    fn a_curve_finds_the_closest_point_that_a_search_of_all_segments_finds() {
-        let mut random = SplitMix64::new(9);
-        for seed in 0..20 {
-            let curve = Pair::random(PairSet::B, seed).optimal;
-            for _ in 0..50 {
-                let point = Point::new(random.between(-2.0, 6.0), random.between(-3.0, 3.0), 0.0);
-                let plain = point - closest_on_polyline(&point, curve.points()).unwrap();
-                assert!((curve.displacement(&point).norm() - plain.norm()).abs() < 1e-12);
-            }
-        }
-        assert_eq!(Curve::new(Vec::new()).displacement(&Point::origin()), Vector::zeros());
-        let only = Curve::new(vec![Point::new(0.0, 3.0, 0.0)]);
-        assert_eq!(only.displacement(&Point::origin()), Vector::new(0.0, -3.0, 0.0));
     }
 
     #[test]

@@ -142,7 +142,7 @@ fn run_one(contestant: Contestant, set: PairSet, error: SensorError, seed: u64) 
     let mut strategy = contestant.strategy(&pair, error != SensorError::None);
     let summaries = rehearse_pair(strategy.as_mut(), &pair, error, seed ^ 0xE4404)?;
     let seconds = start.elapsed().as_secs_f64();
-    let comfort = crate::planning::criteria::comfort(strategy.path(), pair.optimal.points(), THRESHOLD, STEP);
+    let comfort = crate::planning::criteria::comfort(strategy.path(), &pair.optimal, THRESHOLD, STEP);
     Ok(Outcome {
         error: pair.error(strategy.path()),
         mean_distance: comfort.mean_distance,

@@ -3,7 +3,7 @@
 //!
 //! The real supervisor meets the simulated world over a lane that loses, delays, repeats, reorders and corrupts messages;
 //! clocks jump, topics fall silent, the person pulls away, the red button is pressed, and the operator does what operators
-//! do and more. A [`Witness`] that shares no code with the supervisor watches what leaves it. A trial is repeated exactly
+//! do and more. A witness that shares no code with the supervisor watches what leaves it. A trial is repeated exactly
 //! by its seed.
 
 mod crash;

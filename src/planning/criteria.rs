@@ -3,7 +3,7 @@
 //! Reachability: for each place, the best limb through it. Comfort: how far the path is from one without resistance,
 //! where such a path is known (synthetic problems), and the resistance itself on the robot.
 
-use crate::geometry::{Point, closest_on_polyline, polyline_length};
+use crate::geometry::{Curve, Point, polyline_length};
 use crate::modelling::ArmSpace;
 use crate::modelling::stick::{Limb, Reachability, StickFit};
 use crate::planning::line;
@@ -84,11 +84,11 @@ pub struct Comfort {
 
 /// How far a path is from `reference`, judged every `spacing` metres.
 #[must_use]
-pub fn comfort(path: &[Point], reference: &[Point], threshold: f64, spacing: f64) -> Comfort {
+pub fn comfort(path: &[Point], reference: &Curve, threshold: f64, spacing: f64) -> Comfort {
     let mut result = Comfort { mean_distance: 0.0, maximum_distance: 0.0, share_beyond: 0.0 };
     let mut total = 0.0;
     for (point, weight) in stations(path, spacing) {
-        let distance = closest_on_polyline(&point, reference).map_or(0.0, |closest| (point - closest).norm());
+        let distance = reference.displacement(&point).norm();
         result.mean_distance += weight * distance;
         result.maximum_distance = result.maximum_distance.max(distance);
         result.share_beyond += if distance > threshold { weight } else { 0.0 };
@@ -121,13 +121,13 @@ mod tests {
     #[test]
     fn a_path_on_its_reference_is_as_comfortable_as_can_be() {
         let path = [Point::origin(), Point::new(1.0, 0.0, 0.0), Point::new(1.0, 1.0, 0.0)];
-        let judged = comfort(&path, &path, 0.1, 0.1);
+        let judged = comfort(&path, &Curve::new(path.to_vec()), 0.1, 0.1);
         assert!(judged.mean_distance < 1e-12 && judged.share_beyond < 1e-12);
     }
 
     #[test]
     fn distance_is_weighted_by_length() {
-        let reference = [Point::origin(), Point::new(4.0, 0.0, 0.0)];
+        let reference = Curve::new(vec![Point::origin(), Point::new(4.0, 0.0, 0.0)]);
         let beside = [Point::new(0.0, 0.5, 0.0), Point::new(3.0, 0.5, 0.0), Point::new(3.0, -0.5, 0.0)];
         let judged = comfort(&beside, &reference, 0.4, 0.1);
         assert!((judged.mean_distance - (3.0 * 0.5 + 0.25) / 4.0).abs() < 1e-9);
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_path_without_length_is_judged_without_a_division_by_nothing() {
-        let judged = comfort(&[Point::origin(), Point::origin()], &[Point::origin()], 0.1, 0.1);
+        let judged = comfort(&[Point::origin(), Point::origin()], &Curve::new(vec![Point::origin()]), 0.1, 0.1);
         assert!(judged.mean_distance < 1e-12);
     }
 }

@@ -35,7 +35,7 @@ impl<L: Limb> GuardedPair<L> {
     }
 
     /// Takes where the person is: commands are judged by it from now on. Plans keep the scene's margin, commands
-    /// [`STREAMED_SHARE`] of it.
+    /// `STREAMED_SHARE` of it.
     pub fn surround(&mut self, scene: Scene) {
         self.scene = Scene { margin: scene.margin * STREAMED_SHARE, ..scene };
     }

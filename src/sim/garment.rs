@@ -1,7 +1,7 @@
 //! The garment: a sleeveless jacket that both grippers hold at its shoulder parts.
 //!
 //! A garment notices by itself where the grippers are: its armhole goes onto a hand that a gripper brings it to, runs along
-//! the arm, and comes off again. [`Garment`] is the trait that both backends implement.
+//! the arm, and comes off again. `Garment` is the trait that both backends implement.
 
 mod cloth;
 mod passage;

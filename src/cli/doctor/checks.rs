@@ -148,15 +148,14 @@ fn topic(report: &TopicReport) -> Check {
         (None, true) => {
             (Verdict::Fault, "never heard: is the robot on, is ROS_IP right, do the message versions agree?")
         }
-        // What is not needed and not there is no fault.
-        (None, false) => (Verdict::Good, ""),
         (Some(age), _) if age > 0.5 && least > 0.0 => {
             (Verdict::Stale, "no longer comes: look at the node that publishes it")
         }
         (Some(_), _) if !is_rated => {
             (Verdict::Late, "comes at another rate than expected: look at the network and the robot's load")
         }
-        _ => (Verdict::Good, ""),
+        // What is not needed and not there is no fault.
+        (None, false) | (Some(_), _) => (Verdict::Good, ""),
     };
     Check::new(&report.topic, verdict, value, hint).aged(report.age_seconds)
 }

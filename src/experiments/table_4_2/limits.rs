@@ -7,6 +7,7 @@ use super::dresser::{DressingRecord, dress_with};
 use super::present::other;
 use crate::body::{PerSide, Side};
 use crate::experiments::findings::{Drawing, ExperimentError, Findings, Row};
+use crate::geometry::Curve;
 use crate::modelling::stick::{Space, StickFit};
 use crate::modelling::{ArmSpace, FitSettings, Mixture};
 use crate::planning::criteria::{Reach, comfort};
@@ -122,7 +123,7 @@ fn row(limit: &Limit, person: &SimulatedPerson, spaces: &PerSide<ArmSpace>, outc
     let [hand, elbow, shoulder] = person.posture().get(*side).dressed();
     let initial = space.initial_path([(elbow - hand).norm(), (shoulder - elbow).norm()]);
     let reach = Reach::new(space.clone(), &initial, StickFit::new(Space::Spatial)).along(&path, SPACING_METRES);
-    let comfort = comfort(&path, &person.preferred_path(*side), PLAY_METRES, SPACING_METRES);
+    let comfort = comfort(&path, &Curve::new(person.preferred_path(*side)), PLAY_METRES, SPACING_METRES);
     let components = |mixture: &Mixture| mixture.components().len();
     Row::of(limit.figure)
         .with("limits", limit.name)

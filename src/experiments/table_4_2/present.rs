@@ -162,7 +162,8 @@ mod tests {
     #[test]
     fn medians_of_odd_even_and_no_values() {
         let medians = [vec![3.0, 1.0, 2.0], vec![4.0, 1.0, 2.0, 3.0], vec![]].map(median);
-        assert_eq!(medians, [2.0, 2.5, 0.0]);
+        let away = medians.iter().zip([2.0, 2.5, 0.0]).map(|(median, wanted)| (median - wanted).abs());
+        assert!(away.sum::<f64>() < 1e-12, "{medians:?}");
     }
 
     #[test]

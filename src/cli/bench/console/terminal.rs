@@ -112,7 +112,7 @@ fn processor_time(path: &str) -> Option<Duration> {
 }
 
 fn read_all(reader: &mut dyn Read, written: &Written) {
-    let mut bytes = [0; 1 << 16];
+    let mut bytes = vec![0; 1 << 16];
     while let Ok(count @ 1..) = reader.read(&mut bytes) {
         let seen = bytes.get(..count).unwrap_or_default();
         let frames = seen.windows(FRAME.len()).filter(|window| *window == FRAME).count();
