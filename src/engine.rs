@@ -5,6 +5,7 @@
 
 pub mod stop;
 
+use crate::assembly::SwitchRequest;
 use crate::body::Side;
 use crate::command::{Command, Origin};
 use crate::kinematics::{JointVector, Scene};
@@ -24,6 +25,8 @@ const TICK: Duration = Duration::from_millis(10);
 const SNAPSHOT: Duration = Duration::from_millis(33);
 /// Inputs that may wait: a second's worth of everything a robot sends (two wrenches, joints, state at 100 Hz, and poses).
 const INBOX: usize = 512;
+/// What people may ask within one beat: more than anybody types.
+const ORDERS: usize = 64;
 
 /// Carries effects out. Nothing here may block: the supervisor waits for it.
 pub trait Outlet: Send {
@@ -39,7 +42,7 @@ pub trait Outlet: Send {
     /// Passes a question on to the planner outside; its answer comes in as an input. Must not wait for it.
     fn plan(&mut self, order: PlanOrder);
     /// Asks something of the robot's switch.
-    fn switch(&mut self, request: crate::assembly::SwitchRequest);
+    fn switch(&mut self, request: SwitchRequest);
     /// Shows a snapshot to other nodes.
     fn show(&mut self, snapshot: &Snapshot);
     /// Is told every step: what came in, and what was decided.
@@ -49,18 +52,42 @@ pub trait Outlet: Send {
 /// Where inputs go. Cheap to clone; never blocks, counts what it loses.
 #[derive(Clone, Debug)]
 pub struct Inbox {
-    sender: Sender<Input>,
+    samples: Sender<Input>,
+    orders: Sender<Input>,
     lost: Arc<AtomicU64>,
 }
 
+/// The other end of an [`Inbox`].
+#[derive(Debug)]
+struct Waiting {
+    samples: Receiver<Input>,
+    orders: Receiver<Input>,
+    lost: Arc<AtomicU64>,
+}
+
+/// An inbox that holds so many samples, and both of its ends.
+fn inbox(capacity: usize) -> (Inbox, Waiting) {
+    let ((samples, samples_in), (orders, orders_in)) = (bounded(capacity), bounded(ORDERS));
+    let lost = Arc::new(AtomicU64::new(0));
+    let waiting = Waiting { samples: samples_in, orders: orders_in, lost: Arc::clone(&lost) };
+    (Inbox { samples, orders, lost }, waiting)
+}
+
 impl Inbox {
-    /// Puts an input into the inbox; where that is full, the input is lost and counted.
+    /// Puts an input into the inbox; where that is full, the input is lost and counted. What an operator asks has room of
+    /// its own: however many samples wait, it is not lost among them.
     pub fn offer(&self, input: Input) {
-        if let Err(TrySendError::Full(_)) = self.sender.try_send(input) {
+        let queue = if matches!(input, Input::Operator { .. }) { &self.orders } else { &self.samples };
+        if let Err(TrySendError::Full(_)) = queue.try_send(input) {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
     }
 }
+
+/// The supervisor's thread has ended before the engine was told to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the supervisor has died: the robot was stopped; start valet again, and see its log file for the reason")]
+pub struct SupervisorDied;
 
 /// The newest snapshot, shared with whoever shows it.
 #[derive(Clone, Debug, Default)]
@@ -95,8 +122,7 @@ struct Worker {
     latch: StopLatch,
     /// Stops of the latch that the supervisor knows of.
     stops_known: u64,
-    inputs: Receiver<Input>,
-    lost: Arc<AtomicU64>,
+    waiting: Waiting,
     snapshots: SharedSnapshot,
     told: Sender<Effect>,
     ended: Arc<AtomicBool>,
@@ -126,9 +152,8 @@ impl Engine {
     /// # Errors
     /// Where the system has no thread to give.
     pub fn start(supervisor: Supervisor, outlet: Box<dyn Outlet>, latch: StopLatch) -> std::io::Result<Self> {
-        let (sender, inputs) = bounded(INBOX);
+        let (inbox, waiting) = inbox(INBOX);
         let (told, effects) = bounded(INBOX);
-        let lost = Arc::new(AtomicU64::new(0));
         let snapshots = SharedSnapshot::default();
         let ended = Arc::new(AtomicBool::new(false));
         let worker = Worker {
@@ -136,8 +161,7 @@ impl Engine {
             outlet,
             stops_known: latch.requests(),
             latch: latch.clone(),
-            inputs,
-            lost: Arc::clone(&lost),
+            waiting,
             snapshots: snapshots.clone(),
             told,
             ended: Arc::clone(&ended),
@@ -149,7 +173,7 @@ impl Engine {
             worker.run();
             drop(guard);
         })?;
-        Ok(Self { inbox: Inbox { sender, lost }, snapshots, effects, ended, handle: Some(handle) })
+        Ok(Self { inbox, snapshots, effects, ended, handle: Some(handle) })
     }
 
     /// Where inputs go.
@@ -164,10 +188,17 @@ impl Engine {
         self.snapshots.clone()
     }
 
-    /// Decisions for whoever tells of them, setpoints left out; those that nobody takes in time are dropped.
-    #[must_use]
-    pub const fn effects(&self) -> &Receiver<Effect> {
-        &self.effects
+    /// The next decision for whoever tells of them, setpoints left out; `None` where there was none for so long. Those that
+    /// nobody takes in time are dropped.
+    ///
+    /// # Errors
+    /// Where the supervisor's thread has died: nothing is decided any more.
+    pub fn next_effect(&self, patience: Duration) -> Result<Option<Effect>, SupervisorDied> {
+        match self.effects.recv_timeout(patience) {
+            Ok(effect) => Ok(Some(effect)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => Err(SupervisorDied),
+        }
     }
 }
 
@@ -196,20 +227,17 @@ impl Worker {
         let mut next_tick = Instant::now() + TICK;
         let mut next_snapshot = Instant::now();
         while !self.ended.load(Ordering::SeqCst) {
-            match self.inputs.recv_deadline(next_tick) {
+            while let Ok(order) = self.waiting.orders.try_recv() {
+                self.step(&order);
+            }
+            match self.waiting.samples.recv_deadline(next_tick) {
                 Ok(input) => self.step(&input),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
             let now = Instant::now();
             if now >= next_tick {
-                // What came in while a step took long is taken in first: it must not look older than it is.
-                while let Ok(waiting) = self.inputs.try_recv() {
-                    self.step(&waiting);
-                }
-                self.poll_latch();
-                self.report_losses();
-                self.step(&Input::Tick);
+                self.beat();
                 // After a long pause the missed beats are not made up for: the arms must not hurry, and no two beats come
                 // so close together that what is measured between them is mostly noise.
                 next_tick = (next_tick + TICK).max(now + TICK / 2);
@@ -223,6 +251,19 @@ impl Worker {
                 next_snapshot = now + SNAPSHOT;
             }
         }
+    }
+
+    /// One beat of the supervisor.
+    fn beat(&mut self) {
+        // What came in while a step took long is taken in first: it must not look older than it is. What comes in meanwhile
+        // waits: a flood must not put off the beat, which sees to stops.
+        let samples = self.waiting.samples.clone();
+        for sample in samples.try_iter().take(samples.len()) {
+            self.step(&sample);
+        }
+        self.poll_latch();
+        self.report_losses();
+        self.step(&Input::Tick);
     }
 
     /// When the stop was asked for and when its first message left, as the latch and its thread measured it.
@@ -245,7 +286,7 @@ impl Worker {
     }
 
     fn report_losses(&mut self) {
-        let lost = self.lost.swap(0, Ordering::Relaxed);
+        let lost = self.waiting.lost.swap(0, Ordering::Relaxed);
         if lost > 0 {
             self.step(&Input::Link(LinkEvent::InboxOverflow { lost }));
         }
@@ -289,6 +330,8 @@ impl Worker {
                 }
             }
             Effect::Release { side } => self.outlet.release(side),
+            // A stop came straight from a key since the supervisor decided: it is not to be followed by an Enable.
+            Effect::Switch(request) if request != SwitchRequest::Stop && self.latch.requests() != self.stops_known => {}
             Effect::Plan(order) => self.outlet.plan(order),
             Effect::Switch(request) => self.outlet.switch(request),
             told => {

@@ -16,6 +16,7 @@ mod protection;
 mod running;
 mod settings;
 mod sign_check;
+mod switching;
 mod tuning;
 mod view;
 mod warm;
@@ -87,6 +88,8 @@ pub struct Supervisor {
     view: Snapshot,
     comparison: compare::Comparison,
     sign_check: Option<sign_check::SignCheck>,
+    /// What the robot's switch was asked and has not followed yet.
+    asked: Option<switching::Asked>,
     effects: Effects,
 }
 
@@ -116,6 +119,7 @@ impl Supervisor {
             view: Snapshot::default(),
             comparison: compare::Comparison::default(),
             sign_check: None,
+            asked: None,
             effects: Effects::new(),
         };
         supervisor.prepare_view();
@@ -151,6 +155,7 @@ impl Supervisor {
         let inputs = self.protection.judge(now, in_trial);
         let force = if in_trial { self.protection.judge_force() } else { Verdict::clear() };
         self.obey_verdict(now, &inputs.stricter(self.tempered(now, force)));
+        self.follow_switch(now);
         if self.protection.stop().is_latched() {
             self.repeat_stop(now);
             return;
@@ -188,6 +193,7 @@ impl Supervisor {
 
     /// What a stop means in here, whoever asked for it.
     fn enter_stop(&mut self, now: Stamp, cause: &str, outcome: Outcome) {
+        self.asked = None;
         self.drive.drop_motion();
         self.forget_contact();
         self.protection.end_retreat();
@@ -216,6 +222,7 @@ impl Supervisor {
     /// Asks the robot's switch; the edge that follows is our own.
     fn ask_switch(&mut self, now: Stamp, request: SwitchRequest) {
         self.protection.watchdogs_mut().own_switching(now);
+        self.asked = switching::Asked::new(now, request);
         self.effects.push(Effect::Switch(request));
     }
 

@@ -19,11 +19,12 @@ enum Told {
     Step(Input),
 }
 
-/// An outlet that tells what reaches it; refuses setpoints, or breaks, where it is told to.
+/// An outlet that tells what reaches it; refuses setpoints, breaks, or answers each sample with another one, where it is told to.
 struct FakeOutlet {
     told: Sender<Told>,
     refusal: Option<&'static str>,
     breaks: bool,
+    floods: Option<Inbox>,
 }
 
 impl Outlet for FakeOutlet {
@@ -55,6 +56,9 @@ impl Outlet for FakeOutlet {
     fn record(&mut self, _now: Stamp, input: &Input, _effects: &[Effect]) {
         assert!(!self.breaks, "an outlet that breaks");
         self.told.send(Told::Step(input.clone())).unwrap();
+        if let (Some(inbox), Input::Collision { .. }) = (&self.floods, input) {
+            inbox.offer(input.clone());
+        }
     }
 }
 
@@ -64,7 +68,7 @@ fn supervisor() -> Supervisor {
 
 fn outlet() -> (FakeOutlet, Receiver<Told>) {
     let (told, heard) = unbounded();
-    (FakeOutlet { told, refusal: None, breaks: false }, heard)
+    (FakeOutlet { told, refusal: None, breaks: false, floods: None }, heard)
 }
 
 /// A worker that is stepped by hand, with the stop thread that belongs to it and what that sends.
@@ -73,7 +77,7 @@ struct Bench {
     told: Receiver<Told>,
     stops: Receiver<()>,
     effects: Receiver<Effect>,
-    _inbox: Inbox,
+    inbox: Inbox,
     stop: StopThread,
 }
 
@@ -82,22 +86,20 @@ impl Bench {
         let (sent, stops) = unbounded();
         let stop = StopThread::start(move || sent.send(()).unwrap_or_default()).unwrap();
         let (outlet, heard) = outlet();
-        let (sender, inputs) = bounded(4);
+        let (inbox, waiting) = inbox(4);
         let (told, effects) = bounded(64);
-        let lost = Arc::new(AtomicU64::new(0));
         let worker = Worker {
             supervisor: supervisor(),
-            outlet: Box::new(FakeOutlet { refusal, ..outlet }),
+            outlet: Box::new(FakeOutlet { refusal, floods: Some(inbox.clone()), ..outlet }),
             latch: stop.latch(),
             stops_known: 0,
-            inputs,
-            lost: Arc::clone(&lost),
+            waiting,
             snapshots: SharedSnapshot::default(),
             told,
             ended: Arc::default(),
             clock: Clock::start(),
         };
-        Self { worker, told: heard, stops, effects, _inbox: Inbox { sender, lost }, stop }
+        Self { worker, told: heard, stops, effects, inbox, stop }
     }
 
     fn ask(&mut self, command: Command) {
@@ -120,17 +122,15 @@ fn setpoint() -> Effect {
 
 #[test]
 fn a_full_inbox_loses_the_newest_counts_it_and_does_not_block() {
-    let (sender, inputs) = bounded(2);
-    let inbox = Inbox { sender, lost: Arc::default() };
+    let (inbox, waiting) = inbox(2);
     (0..5).for_each(|_| inbox.offer(Input::Tick));
-    assert_eq!((inputs.len(), inbox.lost.load(Ordering::Relaxed)), (2, 3));
+    assert_eq!((waiting.samples.len(), inbox.lost.load(Ordering::Relaxed)), (2, 3));
 }
 
 #[test]
 fn an_inbox_without_a_worker_loses_nothing_that_anybody_missed() {
-    let (sender, inputs) = bounded(2);
-    let inbox = Inbox { sender, lost: Arc::default() };
-    drop(inputs);
+    let (inbox, waiting) = inbox(2);
+    drop(waiting);
     inbox.offer(Input::Tick);
     assert_eq!(inbox.lost.load(Ordering::Relaxed), 0);
 }
@@ -138,7 +138,7 @@ fn an_inbox_without_a_worker_loses_nothing_that_anybody_missed() {
 #[test]
 fn losses_are_told_to_the_supervisor_once() {
     let mut bench = Bench::new(None);
-    bench.worker.lost.store(7, Ordering::Relaxed);
+    bench.worker.waiting.lost.store(7, Ordering::Relaxed);
     bench.worker.report_losses();
     bench.worker.report_losses();
     assert_eq!(bench.told(), [Told::Step(Input::Link(LinkEvent::InboxOverflow { lost: 7 }))]);
@@ -175,6 +175,41 @@ fn telling_stops_where_nobody_takes_it_and_the_arms_are_served_all_the_same() {
     }
     bench.worker.carry_out(now, setpoint());
     assert_eq!(bench.told().len(), 1);
+}
+
+#[test]
+fn what_the_operator_asks_is_not_lost_among_samples() {
+    let mut bench = Bench::new(None);
+    for _ in 0..10 {
+        bench.inbox.offer(Input::Collision { side: Side::Left, active: false });
+    }
+    let hold = Input::Operator { command: Command::Hold, origin: Origin::OperatorKey };
+    bench.inbox.offer(hold.clone());
+    bench.worker.beat();
+    let lost = Input::Link(LinkEvent::InboxOverflow { lost: 6 });
+    assert!(bench.told().contains(&Told::Step(lost)), "samples beyond what the inbox holds are lost and counted");
+    assert_eq!(bench.worker.waiting.orders.try_recv(), Ok(hold));
+}
+
+#[test]
+fn a_beat_comes_although_more_samples_come_than_can_be_taken_in() {
+    let mut bench = Bench::new(None);
+    bench.inbox.offer(Input::Collision { side: Side::Left, active: false });
+    bench.stop.latch().stop();
+    bench.worker.beat();
+    assert!(bench.worker.supervisor.is_stopped());
+    assert_eq!(bench.worker.waiting.samples.len(), 1, "what came in meanwhile waits for the next beat");
+}
+
+#[test]
+fn an_enable_does_not_follow_a_stop_that_a_key_has_asked_for_since_the_decision() {
+    let mut bench = Bench::new(None);
+    bench.stop.latch().stop();
+    let now = bench.worker.clock.now();
+    for request in [SwitchRequest::Enable, SwitchRequest::Reset, SwitchRequest::Stop] {
+        bench.worker.carry_out(now, Effect::Switch(request));
+    }
+    assert_eq!(bench.told(), [Told::Switch(SwitchRequest::Stop)]);
 }
 
 #[test]
@@ -283,6 +318,8 @@ fn a_worker_that_dies_stops_the_robot() {
     let engine = Engine::start(supervisor(), Box::new(FakeOutlet { breaks: true, ..outlet }), stop.latch()).unwrap();
     stops.recv_timeout(PATIENCE).unwrap();
     assert!(stop.latch().is_stopped());
+    while engine.next_effect(PATIENCE).is_ok_and(|effect| effect.is_some()) {}
+    assert_eq!(engine.next_effect(PATIENCE), Err(SupervisorDied), "and whoever tells of decisions learns of it");
     drop(engine);
 }
 

@@ -40,7 +40,7 @@ pub(super) fn follow(session: &Session, strategy: StrategyKind, seed: u64, json:
     output.line(format!("seed {seed}, strategy {strategy}"))?;
     let (began, mut last) = (Instant::now(), None);
     while session.is_running() && !ended.load(Ordering::SeqCst) {
-        if let Ok(effect) = engine.effects().recv_timeout(LOOK) {
+        if let Some(effect) = engine.next_effect(LOOK).map_err(Failure::fault)? {
             let seconds = began.elapsed().as_secs_f64();
             if let Some(report) = Report::of(&effect) {
                 print_report(&mut output, &report, seconds)?;

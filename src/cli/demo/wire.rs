@@ -114,7 +114,7 @@ fn follow(arguments: &Arguments, session: &Session, strategy: &str) -> Result<Tr
     output.line(format!("seed {}, strategy {strategy}", arguments.seed))?;
     let began = Instant::now();
     while began.elapsed() < LONGEST_TRIAL && session.is_running() {
-        if let Ok(effect) = engine.effects().recv_timeout(LOOK) {
+        if let Some(effect) = engine.next_effect(LOOK).map_err(Failure::fault)? {
             if let Some(report) = Report::of(&effect) {
                 print_report(&mut output, &report, began.elapsed().as_secs_f64())?;
             }
