@@ -29,7 +29,19 @@ impl ArmRelative {
     pub fn is_usable(&self) -> bool {
         self.0 <= 1 && (-1.0..=2.0).contains(&self.1) && self.2.iter().all(|offset| offset.abs() <= 0.5)
     }
+
+    /// True where another way-point lies at the same place: the line between the two has no direction.
+    #[must_use]
+    pub fn is_at(&self, other: &Self) -> bool {
+        let offsets = self.2.iter().zip(other.2);
+        self.0 == other.0
+            && (self.1 - other.1).abs() < SAME_PLACE
+            && offsets.map(|(one, other)| (one - other).abs()).all(|apart| apart < SAME_PLACE)
+    }
 }
+
+/// Shares and metres closer than this tell the same place.
+const SAME_PLACE: f64 = 1e-6;
 
 /// The directions of a part of an arm: along it, level across it, and upwards across it.
 fn directions(start: &Point, end: &Point) -> Option<[Vector; 3]> {

@@ -82,6 +82,11 @@ impl Supervisor {
         let Some(trial) = self.trial.as_ref() else { return };
         let (learned, arm) = (trial.strategy(side).learned(), arm_of(trial.joints(side)));
         let waypoints = learned.path.iter().map(|waypoint| arm.relative(waypoint)).collect::<Option<Vec<_>>>();
+        // A gripper that gave way by nothing leaves two way-points at one place; a path to begin with has none.
+        let waypoints = waypoints.map(|mut waypoints| {
+            waypoints.dedup_by(|next, kept| next.is_at(kept));
+            waypoints
+        });
         let energy_newtons = self.view.sides.get(side).iterations.last().map_or(0.0, |iteration| iteration.energy);
         if let Some(waypoints) = waypoints.filter(|waypoints| waypoints.iter().all(ArmRelative::is_usable)) {
             self.effects.push(Effect::Learned(WarmStart {

@@ -79,6 +79,11 @@ fn learned(profile: &Profile) -> Result<(), (String, String)> {
         if path.waypoints.len() < 2 {
             return Err((format!("learned[{index}].waypoints"), "a path has at least two".into()));
         }
+        let pairs = path.waypoints.iter().zip(path.waypoints.iter().skip(1));
+        if let Some(first) = pairs.into_iter().position(|(one, next)| one.is_at(next)) {
+            let key = format!("learned[{index}].waypoints[{}]", first + 1);
+            return Err((key, "lies where the one before it lies: a path's segments have a length".into()));
+        }
     }
     Ok(())
 }

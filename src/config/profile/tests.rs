@@ -39,6 +39,13 @@ fn the_smallest_profile_is_a_pseudonym() {
     assert_eq!(loaded.short_hash().len(), 12);
 }
 
+fn learned(waypoints: &str) -> String {
+    format!(
+        "version = 1\npseudonym = \"p-01\"\n[[learned]]\nside = \"right\"\nstrategy = \"force\"\ntrial = \"p-01-001\"\n\
+         energy_newtons = 0.0\nwaypoints = {waypoints}"
+    )
+}
+
 #[test]
 fn mistakes_are_named_with_file_and_key() {
     let cases = [
@@ -51,6 +58,9 @@ fn mistakes_are_named_with_file_and_key() {
         ("version = 1\npseudonym = \"p-01\"\n[consent]\nversion = \"\"\ndate = \"2026-11-22\"", "consent.version"),
         ("version = 1\npseudonym = \"p-01\"\n[simulated.body]\nstature_metres = 17.5", "stature_metres"),
         ("version = 1\npseudonym = \"p-01\"\n[[garments]]\nname = \"\"", "garments[0].name"),
+        (&learned("[]"), "learned[0].waypoints"),
+        (&learned("[[0, 0.0, [0, 0, 0]], [1, 9.0, [0, 0, 0]]]"), "learned[0].waypoints[1]"),
+        (&learned("[[0, 0.0, [0, 0, 0]], [0, 0.0, [0, 0, 0]], [1, 1.0, [0, 0, 0]]]"), "learned[0].waypoints[1]"),
         ("version = \"one\"\npseudonym = \"p-01\"", "version"),
         ("version = 1\npseudonym = ", "pseudonym"),
     ];
