@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::kinematics::waiting_place;
+use crate::strategy::IterationSummary;
 use crate::strategy::{Finish, LearnedPath, Reaction, StrategyKind};
 use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
 
