@@ -5,11 +5,13 @@
 //! nothing, blocks no thread of the core and prints nothing.
 
 pub mod decode;
+mod definitions;
 pub mod ears;
 mod encode;
 pub mod environment;
 pub mod error;
 pub mod graph;
+mod greeting;
 pub mod link;
 pub mod master;
 pub mod message;

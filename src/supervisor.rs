@@ -321,6 +321,12 @@ impl Supervisor {
                 self.protection.watchdogs_mut().foreign_publisher_gone(topic, node);
                 self.log(now, Level::Information, "link", format!("{node} publishes on {topic} no more"));
             }
+            LinkEvent::WrongDefinition { topic, node, found, wanted } => {
+                let text = format!(
+                    "{node} publishes {topic} as {found}, valet reads {wanted}: nothing of it is used; bring the message packages of both to one version"
+                );
+                self.log(now, Level::Error, "link", text);
+            }
             LinkEvent::WorkerLost { name } => {
                 self.stop(now, &format!("the part of valet called {name} died"), Outcome::Fault);
             }

@@ -14,6 +14,7 @@ use crate::ros::master::{EmbeddedMaster, USUAL_PORT, relay_log};
 use crate::ros::simulation::{DepthPicture, Senses, SimNode, SimulatedCamera, SimulatedRobot};
 use crate::ros::{Node, RosError, environment, leave};
 use crate::sim::camera;
+use crate::sim::faults::{Fault, FaultPlan};
 use crate::sim::person::{ArmPoints, SimulatedPerson};
 use crate::sim::world::{Backend, World, WorldSetup};
 use crate::snapshot::Level;
@@ -68,6 +69,18 @@ impl From<GarmentModel> for Backend {
     }
 }
 
+/// What the simulated skeleton tracker publishes on `/tf`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum SkeletonTracker {
+    /// All joints, always: a camera that nothing stands before.
+    #[default]
+    Steady,
+    /// Joints that the robot's grippers hide from the camera are no longer published: their frames go stale.
+    Occluded,
+    /// No tracker runs: the person's pose must come from depth images.
+    None,
+}
+
 /// The simulated Baxter, person and camera as a ROS node.
 ///
 /// The private parameters ~profile and ~seed stand in for options that are not typed.
@@ -88,6 +101,12 @@ pub(super) struct Arguments {
     /// The model of the garment.
     #[arg(long, value_enum, default_value_t)]
     pub(super) garment: GarmentModel,
+    /// What the skeleton tracker publishes on /tf.
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) skeleton: SkeletonTracker,
+    /// Something that goes wrong; may be repeated. As in `kind = "lost_pose", from_seconds = 20, duration_seconds = 5`.
+    #[arg(long, value_name = "FAULT", value_parser = fault)]
+    pub(super) fault: Vec<Fault>,
     /// Instead of a robot: write depth images of simulated people with their truth into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) images: Option<PathBuf>,
@@ -100,6 +119,17 @@ pub(super) struct Arguments {
 struct WorldOnTheWire {
     world: World,
     seen: SeenArms,
+    has_tracker: bool,
+}
+
+/// Reads what is to go wrong.
+fn fault(text: &str) -> Result<Fault, String> {
+    #[derive(serde::Deserialize)]
+    struct Typed {
+        fault: Fault,
+    }
+    let typed: Result<Typed, _> = toml::from_str(&format!("fault = {{ {text} }}"));
+    typed.map(|typed| typed.fault).map_err(|error| error.message().to_owned())
 }
 
 /// Where the person's arms are, for the camera, which takes its pictures in a thread of its own.
@@ -158,7 +188,7 @@ impl SimulatedRobot for WorldOnTheWire {
             joints: output.joints,
             robot: output.robot,
             collisions: output.collisions,
-            bodies: output.bodies,
+            bodies: if self.has_tracker { output.bodies } else { Vec::new() },
         }
     }
 }
@@ -183,6 +213,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         person: person.simulated.clone().unwrap_or_default(),
         garment: person.garment(None).cloned().unwrap_or_default(),
         backend: arguments.garment.into(),
+        arms_hide_joints: arguments.skeleton == SkeletonTracker::Occluded,
+        faults: FaultPlan { faults: arguments.fault.clone() },
         ..WorldSetup::default()
     };
     let world = World::new(&setup).map_err(Failure::configuration)?;
@@ -190,7 +222,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let relay = master.as_ref().map(|_| relay_log()).transpose().map_err(ros_failure)?;
     let camera =
         HeadCamera { person: setup.person, seen: Arc::clone(&seen_arms), intrinsics: Intrinsics::default(), seed };
-    let mut robot = SimNode::new(&node, Box::new(WorldOnTheWire { world, seen: seen_arms })).map_err(ros_failure)?;
+    let has_tracker = arguments.skeleton != SkeletonTracker::None;
+    let behind = WorldOnTheWire { world, seen: seen_arms, has_tracker };
+    let mut robot = SimNode::new(&node, Box::new(behind)).map_err(ros_failure)?;
     robot.add_camera(Box::new(camera)).map_err(ros_failure)?;
     let words = format!("simulated Baxter {} with seed {seed} on the master at {}", node.name(), node.master());
     Output::new(false).line(&words)?;
@@ -235,5 +269,25 @@ pub(super) fn ros_failure(error: RosError) -> Failure {
     match error {
         RosError::NoMaster { .. } => Failure::NoMaster(error.to_string()),
         _ => Failure::Fault(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::faults::FaultKind;
+
+    #[test]
+    fn a_fault_is_read_as_it_stands_in_a_file_and_a_wrong_key_is_named() {
+        let read = fault("kind = \"lost_pose\", from_seconds = 20, duration_seconds = 5").unwrap();
+        assert_eq!((read.kind, read.from_seconds, read.duration_seconds), (FaultKind::LostPose, 20.0, Some(5.0)));
+        let pulled = fault("kind = \"pull_away\", metres = 0.1, side = \"left\", from_seconds = 1").unwrap();
+        assert_eq!((pulled.kind, pulled.side), (FaultKind::PullAway { metres: 0.1 }, Some(Side::Left)));
+        for (typed, word) in
+            [("kind = \"sneeze\", from_seconds = 1", "sneeze"), ("kind = \"lost_pose\"", "from_seconds")]
+        {
+            let refused = fault(typed).unwrap_err();
+            assert!(refused.contains(word), "{refused}");
+        }
     }
 }

@@ -5,7 +5,7 @@
 
 pub mod skeleton;
 
-use super::message::{baxter_core_msgs, geometry_msgs, sensor_msgs};
+use super::message::{baxter_core_msgs, baxter_core_msgs_1_1, geometry_msgs, sensor_msgs};
 use crate::assembly::{RedButton, RobotState, StopSource};
 use crate::body::{PerSide, Side};
 use crate::geometry::{Pose, Vector, Wrench};
@@ -21,6 +21,15 @@ pub const JOINTS: [&str; 7] = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
 /// `/robot/state` of any release: SDK 1.2.0 put a new first field before the others, so the length tells the form.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AnyAssemblyState(Vec<u8>);
+
+impl AnyAssemblyState {
+    /// The digests of the forms that are read, the newer first.
+    #[must_use]
+    pub fn digests() -> Vec<String> {
+        use rosrust::Message;
+        vec![baxter_core_msgs::AssemblyState::md5sum(), baxter_core_msgs_1_1::AssemblyState::md5sum()]
+    }
+}
 
 impl rosrust::RosMsg for AnyAssemblyState {
     fn encode<W: io::Write>(&self, mut writer: W) -> io::Result<()> {

@@ -126,12 +126,14 @@ pub(super) fn diagnostics(stamp: Stamp, node: &str, reports: &[TopicReport]) -> 
     use diagnostic_msgs::{DiagnosticStatus, KeyValue};
     let status = reports.iter().map(|report| {
         let (level, message) = match report.age_seconds {
+            _ if !report.wrong.is_empty() => (DiagnosticStatus::ERROR, "published by another definition"),
             _ if report.is_good() => (DiagnosticStatus::OK, "as expected"),
             None if report.required => (DiagnosticStatus::ERROR, "never heard"),
             None => (DiagnosticStatus::OK, "not published"),
             Some(_) if report.required => (DiagnosticStatus::ERROR, "late or silent"),
             Some(_) => (DiagnosticStatus::WARN, "late or silent"),
         };
+        let wrong: Vec<_> = report.wrong.iter().map(|(node, found)| format!("{node}: {found}")).collect();
         let value = |key: &str, value: String| KeyValue { key: key.to_owned(), value };
         DiagnosticStatus {
             level,
@@ -143,6 +145,7 @@ pub(super) fn diagnostics(stamp: Stamp, node: &str, reports: &[TopicReport]) -> 
                 value("hertz", format!("{:.1}", report.hertz)),
                 value("unusable", report.unusable.to_string()),
                 value("publishers", report.publishers.join(" ")),
+                value("other_definitions", wrong.join(" ")),
             ],
         }
     });
@@ -201,15 +204,15 @@ pub(super) fn robot_state(state: &RobotState) -> baxter_core_msgs::AssemblyState
     }
 }
 
-/// A person's pose as a skeleton tracker sends it, user 1, straight in the robot's base.
-pub(super) fn skeleton(body: &BodyPose) -> tf2_msgs::TFMessage {
+/// A person's pose as a skeleton tracker sends it, with the user's number, straight in the robot's base.
+pub(super) fn skeleton(body: &BodyPose, user: u32) -> tf2_msgs::TFMessage {
     let arms = Side::BOTH.into_iter().flat_map(|side| {
         let tracked = [(Joint::Hand, "hand"), (Joint::Elbow, "elbow"), (Joint::Shoulder, "shoulder")];
-        tracked
-            .into_iter()
-            .filter_map(move |(joint, word)| Some((format!("{side}_{word}_1"), body.arms.get(side).position(joint)?)))
+        tracked.into_iter().filter_map(move |(joint, word)| {
+            Some((format!("{side}_{word}_{user}"), body.arms.get(side).position(joint)?))
+        })
     });
-    let neck = body.neck.map(|neck| ("neck_1".to_owned(), neck.position));
+    let neck = body.neck.map(|neck| (format!("neck_{user}"), neck.position));
     let upright = |place: Point| Pose::from_parts(place.into(), nalgebra::UnitQuaternion::identity());
     let transforms = arms.chain(neck).map(|(name, place)| transform(body.stamp, BASE, &name, &upright(place)));
     tf2_msgs::TFMessage { transforms: transforms.collect() }
@@ -248,7 +251,7 @@ mod tests {
                 && back.pose.rotation.angle_to(&pose.rotation) < 1e-7
         );
         assert_eq!((back.wrench, back.stamp), (sample.wrench, sample.stamp));
-        assert!(skeleton(&BodyPose::default()).transforms.is_empty());
+        assert!(skeleton(&BodyPose::default(), 1).transforms.is_empty());
     }
 
     #[test]

@@ -5,38 +5,29 @@
 //! to [`super::node::leave`], which gives it a second.
 
 mod diagnostics;
+mod senses;
 mod services;
 mod show;
 
+pub use senses::DepthWatcher;
 pub use show::Showing;
 
-use super::decode::{self, AnyAssemblyState, DepthFrame, skeleton::Skeleton};
+use super::decode::DepthFrame;
 use super::encode;
 use super::error::RosError;
-use super::message::{baxter_core_msgs, sensor_msgs, std_msgs, tf2_msgs};
+use super::message::{baxter_core_msgs, std_msgs};
 use super::monitor::{Monitor, TopicReport, now};
 use super::node::Node;
-use super::subscription::{Decoded, Sink, Subscription, TopicNeed};
+use super::subscription::Sink;
 use super::watch::Watch;
 use crate::assembly::SwitchRequest;
 use crate::body::{PerSide, Side};
 use crate::kinematics::JointVector;
 use crate::robot::PortError;
-use crate::supervisor::Input;
 use rosrust::{Message, Publisher, Service};
+use senses::{NewestDepth, subscribe};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-
-/// Messages that may wait for their callback at 100 Hz: 80 ms, beyond which they are stale anyway.
-const QUEUE: usize = 8;
-/// The robot's beat and what is tolerated round it, in messages a second.
-const HUNDRED_HERTZ: (f64, f64) = (80.0, 125.0);
-/// Both publishers of joint states together: 100 Hz of the robot, and the grippers' own messages.
-const JOINT_HERTZ: (f64, f64) = (40.0, 400.0);
-/// A depth camera's beat.
-const THIRTY_HERTZ: (f64, f64) = (20.0, 35.0);
-/// Anything goes.
-const ANY_RATE: (f64, f64) = (0.0, f64::INFINITY);
 
 /// The share of their top speeds that the arms are given: the motion limits ask for 0.75 rad/s of a shoulder's 2 rad/s, and
 /// with a third more an arm catches up after a pause without lunging.
@@ -308,102 +299,4 @@ pub(super) fn advertise<T: Message>(topic: &str, queue: usize) -> Result<Publish
 
 fn send<T: Message>(publisher: &Publisher<T>, message: T, what: &str) -> Result<(), PortError> {
     publisher.send(message).map_err(|error| PortError { what: what.to_owned(), reason: error.to_string() })
-}
-
-/// The newest depth image, and the camera's figures that go with it.
-#[derive(Clone, Debug, Default)]
-struct NewestDepth {
-    frame: Arc<Mutex<Option<DepthFrame>>>,
-    matrix: Arc<Mutex<Option<[f64; 9]>>>,
-    watcher: Arc<Watcher>,
-}
-
-/// Sees every depth image as it comes, in the thread that receives it: must be quick.
-pub type DepthWatcher = Box<dyn Fn(&DepthFrame) + Send + Sync>;
-
-/// Who sees every depth image; nobody at first.
-#[derive(Default)]
-struct Watcher(OnceLock<DepthWatcher>);
-
-impl std::fmt::Debug for Watcher {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_tuple("Watcher").field(&self.0.get().is_some()).finish()
-    }
-}
-
-impl NewestDepth {
-    fn put(&self, mut frame: DepthFrame) {
-        frame.camera_matrix = *self.matrix.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(watcher) = self.watcher.0.get() {
-            watcher(&frame);
-        }
-        *self.frame.lock().unwrap_or_else(PoisonError::into_inner) = Some(frame);
-    }
-
-    fn take(&self) -> Option<DepthFrame> {
-        self.frame.lock().unwrap_or_else(PoisonError::into_inner).take()
-    }
-
-    fn calibrate(&self, matrix: [f64; 9]) {
-        *self.matrix.lock().unwrap_or_else(PoisonError::into_inner) = Some(matrix);
-    }
-}
-
-fn need(topic: &'static str, queue: usize, expected_hertz: (f64, f64), required: bool) -> TopicNeed {
-    TopicNeed { topic, queue, expected_hertz, required }
-}
-
-fn subscribe(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosError> {
-    let mut all = Vec::new();
-    for (side, endpoint, collision) in [
-        (Side::Left, "/robot/limb/left/endpoint_state", "/robot/limb/left/collision_detection_state"),
-        (Side::Right, "/robot/limb/right/endpoint_state", "/robot/limb/right/collision_detection_state"),
-    ] {
-        let decode = move |message| Decoded::Input(Input::Endpoint(decode::endpoint(side, &message)));
-        all.push(Subscription::new::<baxter_core_msgs::EndpointState>(
-            need(endpoint, QUEUE, HUNDRED_HERTZ, true),
-            sink,
-            decode,
-        )?);
-        let decode = move |message: baxter_core_msgs::CollisionDetectionState| {
-            Decoded::Input(Input::Collision { side, active: message.collision_state })
-        };
-        all.push(Subscription::new(need(collision, QUEUE, ANY_RATE, false), sink, decode)?);
-    }
-    let decode = |message: sensor_msgs::JointState| {
-        decode::joints(&message).map_or(Decoded::Kept, |sample| Decoded::Input(Input::Joints(sample)))
-    };
-    all.push(Subscription::new(need("/robot/joint_states", QUEUE, JOINT_HERTZ, true), sink, decode)?);
-    let decode = |message: AnyAssemblyState| {
-        decode::robot_state(&message, now()).map_or(Decoded::Unusable, |state| Decoded::Input(Input::Robot(state)))
-    };
-    all.push(Subscription::new(need("/robot/state", QUEUE, (5.0, 125.0), true), sink, decode)?);
-    all.extend(subscribe_camera(sink, depth)?);
-    Ok(all)
-}
-
-fn subscribe_camera(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosError> {
-    let newest = depth.clone();
-    let image = move |message: sensor_msgs::Image| match decode::depth(message) {
-        Some(frame) => {
-            newest.put(frame);
-            Decoded::Kept
-        }
-        None => Decoded::Unusable,
-    };
-    let newest = depth.clone();
-    let information = move |message: sensor_msgs::CameraInfo| {
-        newest.calibrate(message.K);
-        Decoded::Kept
-    };
-    let skeletons = Mutex::new(Skeleton::default());
-    let transforms = move |message: tf2_msgs::TFMessage| {
-        let pose = skeletons.lock().unwrap_or_else(PoisonError::into_inner).take(&message.transforms);
-        pose.map_or(Decoded::Kept, |pose| Decoded::Input(Input::Body(pose)))
-    };
-    Ok(vec![
-        Subscription::new(need("/camera/depth/image_raw", 1, THIRTY_HERTZ, false), sink, image)?,
-        Subscription::new(need("/camera/depth/camera_info", 1, THIRTY_HERTZ, false), sink, information)?,
-        Subscription::new(need("/tf", 64, ANY_RATE, false), sink, transforms)?,
-    ])
 }

@@ -3,8 +3,10 @@
 //! Judges nothing: the core's watchdogs decide what a silence means. This is for the check-list, for diagnostics, and for
 //! the watch, which subscribes anew where a live publisher has gone silent.
 
+use super::definitions::Definition;
 use crate::sensing::{Freshness, FreshnessSettings};
 use crate::time::Stamp;
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -35,6 +37,8 @@ pub struct TopicReport {
     pub unusable: u64,
     /// Nodes that publish it, as the master knows them.
     pub publishers: Vec<String>,
+    /// Those of them whose messages cannot be read, and what they publish: type and digest.
+    pub wrong: Vec<(String, String)>,
     /// True where a trial cannot go on without it.
     pub required: bool,
 }
@@ -53,6 +57,8 @@ struct State {
     freshness: Freshness,
     unusable: u64,
     publishers: Vec<String>,
+    /// What publishers with another definition publish, by their names.
+    wrong: BTreeMap<String, String>,
 }
 
 /// One topic's monitor. Cheap to clone.
@@ -62,24 +68,45 @@ pub(super) struct Monitor {
     pub(super) topic: String,
     /// As the master knows it, after remappings.
     pub(super) resolved: String,
-    kind: String,
+    /// The definitions that are read here.
+    pub(super) definitions: Vec<Definition>,
     required: bool,
     expected_hertz: (f64, f64),
     state: Arc<Mutex<State>>,
 }
 
 impl Monitor {
-    pub(super) fn new(topic: &str, kind: String, expected_hertz: (f64, f64), required: bool) -> Self {
+    pub(super) fn new(topic: &str, definition: Definition, expected_hertz: (f64, f64), required: bool) -> Self {
         let (least, most) = expected_hertz;
         let settings = FreshnessSettings::new(least, most, Duration::from_millis(500));
-        let state = State { freshness: Freshness::new(settings), unusable: 0, publishers: Vec::new() };
+        let state =
+            State { freshness: Freshness::new(settings), unusable: 0, publishers: Vec::new(), wrong: BTreeMap::new() };
         let (topic, resolved) = (topic.to_owned(), topic.to_owned());
-        Self { topic, resolved, kind, required, expected_hertz, state: Arc::new(Mutex::new(state)) }
+        Self {
+            topic,
+            resolved,
+            definitions: vec![definition],
+            required,
+            expected_hertz,
+            state: Arc::new(Mutex::new(state)),
+        }
     }
 
     /// The same under the name that the master knows.
     pub(super) fn resolved_as(self, resolved: String) -> Self {
         Self { resolved, ..self }
+    }
+
+    /// The same where messages of one type are read by several definitions.
+    pub(super) fn reading(self, digests: Vec<String>) -> Self {
+        let kind = self.kind();
+        let definition = |digest| Definition { kind: kind.clone(), digest };
+        let definitions = digests.into_iter().map(definition).collect();
+        Self { definitions, ..self }
+    }
+
+    fn kind(&self) -> String {
+        self.definitions.first().map(|definition| definition.kind.clone()).unwrap_or_default()
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> T {
@@ -97,7 +124,18 @@ impl Monitor {
     }
 
     pub(super) fn set_publishers(&self, publishers: Vec<String>) {
-        self.with(|state| state.publishers = publishers);
+        self.with(|state| {
+            state.wrong.retain(|node, _| publishers.contains(node));
+            state.publishers = publishers;
+        });
+    }
+
+    /// What a publisher publishes by a definition that is not read here; `None` where it is.
+    pub(super) fn set_wrong(&self, node: &str, found: Option<String>) {
+        self.with(|state| match found {
+            Some(found) => drop(state.wrong.insert(node.to_owned(), found)),
+            None => drop(state.wrong.remove(node)),
+        });
     }
 
     /// True where somebody publishes and nothing has come for `span`.
@@ -108,7 +146,7 @@ impl Monitor {
     pub(super) fn report(&self, now: Stamp) -> TopicReport {
         self.with(|state| TopicReport {
             topic: self.resolved.clone(),
-            kind: self.kind.clone(),
+            kind: self.kind(),
             age_seconds: state.freshness.age(now).map(|age| age.as_secs_f64()),
             hertz: state.freshness.rate(now),
             expected_hertz: self.expected_hertz,
@@ -116,6 +154,7 @@ impl Monitor {
             jitter_seconds: state.freshness.jitter(now),
             unusable: state.unusable,
             publishers: state.publishers.clone(),
+            wrong: state.wrong.iter().map(|(node, found)| (node.clone(), found.clone())).collect(),
             required: self.required,
         })
     }
@@ -125,9 +164,13 @@ impl Monitor {
 mod tests {
     use super::*;
 
+    fn definition() -> Definition {
+        Definition { kind: "type".into(), digest: "digest".into() }
+    }
+
     #[test]
     fn silence_counts_only_where_somebody_publishes() {
-        let monitor = Monitor::new("/robot/state", "type".into(), (80.0, 120.0), true);
+        let monitor = Monitor::new("/robot/state", definition(), (80.0, 120.0), true);
         let at = |milliseconds: u64| Stamp::from_nanoseconds(milliseconds * 1_000_000);
         assert!(!monitor.is_silent(at(5_000), Duration::from_secs(2)));
         monitor.set_publishers(vec!["/robot".into()]);
@@ -139,12 +182,22 @@ mod tests {
 
     #[test]
     fn a_report_tells_age_and_rate() {
-        let monitor = Monitor::new("/robot/state", "type".into(), (80.0, 120.0), true);
+        let monitor = Monitor::new("/robot/state", definition(), (80.0, 120.0), true);
         (0..100_u64).for_each(|index| monitor.observe(Stamp::from_nanoseconds(index * 10_000_000)));
         monitor.unusable();
         let report = monitor.report(Stamp::from_nanoseconds(1_000_000_000));
         assert!((report.hertz - 100.0).abs() < 2.0 && report.is_good(), "{report:?}");
         assert_eq!((report.age_seconds, report.unusable), (Some(0.01), 1));
         assert!(!monitor.report(Stamp::from_nanoseconds(3_000_000_000)).is_good());
+    }
+
+    #[test]
+    fn a_publisher_with_another_definition_is_reported_as_long_as_it_is_there() {
+        let monitor = Monitor::new("/robot/state", definition(), (80.0, 120.0), true);
+        monitor.set_publishers(vec!["/old_robot".into()]);
+        monitor.set_wrong("/old_robot", Some("other (md5 1)".into()));
+        assert_eq!(monitor.report(now()).wrong, [("/old_robot".to_owned(), "other (md5 1)".to_owned())]);
+        monitor.set_publishers(vec!["/robot".into()]);
+        assert!(monitor.report(now()).wrong.is_empty());
     }
 }

@@ -3,19 +3,17 @@
 //! rosrust's own client waits for ever for a server that hangs, and cannot ask for a digest. One call, one connection: the
 //! server is looked up at the master, greeted with the digest of the definition, and asked.
 
+use super::greeting::{self, Fields, read_block};
 use super::xmlrpc::Value;
 use super::xmlrpc::http::{CallError, call_ros};
 use rosrust::{RosMsg, ServicePair};
-use std::collections::HashMap;
 use std::io::{self, Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
+use std::net::TcpStream;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
 /// Largest answer: a path of some thousand points with all joints is about a megabyte.
 const LARGEST_ANSWER: u32 = 64 << 20;
-/// Largest greeting.
-const LARGEST_GREETING: u32 = 1 << 20;
 
 /// Why a service did not answer as it should.
 #[derive(Debug, Error)]
@@ -100,10 +98,10 @@ impl ServiceCaller {
     }
 
     /// Connects, and exchanges greetings. `probe` asks for the greeting alone.
-    fn greet(&self, digest: &str, probe: bool) -> Result<(TcpStream, HashMap<String, String>), ServiceError> {
+    fn greet(&self, digest: &str, probe: bool) -> Result<(TcpStream, Fields), ServiceError> {
         let began = Instant::now();
         let mut stream = self.connect(began)?;
-        let mut fields = HashMap::from([
+        let mut fields = Fields::from([
             ("callerid".to_owned(), self.caller.clone()),
             ("service".to_owned(), self.service.clone()),
             ("md5sum".to_owned(), digest.to_owned()),
@@ -111,14 +109,13 @@ impl ServiceCaller {
         if probe {
             fields.insert("probe".to_owned(), "1".to_owned());
         }
-        let mut greeting = Vec::new();
-        fields.encode(&mut greeting).map_err(|error| self.unreadable(&error))?;
-        stream.write_all(&greeting).map_err(|error| self.silent(began, &error))?;
-        let answer = read_block(&mut stream, LARGEST_GREETING).map_err(|error| self.silent(began, &error))?;
-        let fields = read_fields(&answer).ok_or_else(|| self.unreadable("its greeting has no fields"))?;
-        match fields.get("error") {
+        let answer = greeting::exchange(&mut stream, &fields).map_err(|error| match error.kind() {
+            io::ErrorKind::InvalidData => self.unreadable(&error),
+            _ => self.silent(began, &error),
+        })?;
+        match answer.get("error") {
             Some(reason) => Err(self.refused(reason)),
-            None => Ok((stream, fields)),
+            None => Ok((stream, answer)),
         }
     }
 
@@ -130,15 +127,7 @@ impl ServiceCaller {
         })?;
         let uri = found.as_text().unwrap_or_default();
         let authority = uri.strip_prefix("rosrpc://").unwrap_or(uri).trim_end_matches('/');
-        let silent = |error: io::Error| self.silent(began, &error);
-        let address = authority.to_socket_addrs().map_err(silent)?.next();
-        let address = address.ok_or_else(|| self.silent(began, &io::Error::other(format!("{uri} is no address"))))?;
-        let stream = TcpStream::connect_timeout(&address, self.limit).map_err(silent)?;
-        stream.set_read_timeout(Some(self.limit)).map_err(silent)?;
-        stream.set_write_timeout(Some(self.limit)).map_err(silent)?;
-        // A request is one small packet: waiting for more of it would only cost time.
-        stream.set_nodelay(true).map_err(silent)?;
-        Ok(stream)
+        greeting::connect(authority, self.limit).map_err(|error| self.silent(began, &error))
     }
 
     fn silent(&self, began: Instant, reason: &io::Error) -> ServiceError {
@@ -156,34 +145,6 @@ impl ServiceCaller {
     fn unreadable(&self, reason: impl std::fmt::Display) -> ServiceError {
         ServiceError::Unreadable { service: self.service.clone(), reason: reason.to_string() }
     }
-}
-
-/// Reads a block of bytes that begins with its length.
-fn read_block(stream: &mut impl Read, most: u32) -> io::Result<Vec<u8>> {
-    let mut length = [0; 4];
-    stream.read_exact(&mut length)?;
-    let length = u32::from_le_bytes(length);
-    if length > most {
-        return Err(io::Error::other(format!("{length} bytes are announced, more than {most}")));
-    }
-    let mut block = Vec::new();
-    stream.take(u64::from(length)).read_to_end(&mut block)?;
-    let whole = u32::try_from(block.len()) == Ok(length);
-    if whole { Ok(block) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
-}
-
-/// The fields of a greeting: each with its length before it, of the form key=value.
-fn read_fields(mut bytes: &[u8]) -> Option<HashMap<String, String>> {
-    let mut fields = HashMap::new();
-    while !bytes.is_empty() {
-        let (length, rest) = bytes.split_first_chunk()?;
-        let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
-        let (field, rest) = rest.split_at_checked(length)?;
-        let (key, value) = std::str::from_utf8(field).ok()?.split_once('=')?;
-        fields.insert(key.to_owned(), value.to_owned());
-        bytes = rest;
-    }
-    Some(fields)
 }
 
 #[cfg(test)]

@@ -36,6 +36,8 @@ const QUEUE: usize = 8;
 const FINGER_BEATS: u64 = 5;
 /// The share of its top speeds at which a real robot moves until it is told otherwise (SDK 1.2.0).
 const SPEED_RATIO: f64 = 0.3;
+/// A person who was out of sight for so long is a new one to the tracker.
+const LOST_AFTER: Duration = Duration::from_secs(1);
 /// Contact states are repeated at a tenth of the robot's beat.
 const COLLISION_BEATS: u64 = 10;
 
@@ -89,6 +91,7 @@ pub struct SimNode {
     commands: Receiver<Command>,
     robot: Box<dyn SimulatedRobot>,
     colliding: PerSide<bool>,
+    tracked: Tracked,
     beats: u64,
     /// Keeps the camera's place latched.
     mount: Option<Publisher<tf2_msgs::TFMessage>>,
@@ -115,6 +118,7 @@ impl SimNode {
             commands,
             robot,
             colliding: PerSide::default(),
+            tracked: Tracked::default(),
             beats: 0,
             mount: None,
             ended: Arc::default(),
@@ -188,8 +192,24 @@ impl SimNode {
             Side::BOTH.into_iter().for_each(|side| drop(self.topics.joints.send(encode::finger(now, side))));
         }
         for body in &senses.bodies {
-            drop(self.topics.transforms.send(encode::skeleton(body)));
+            let user = self.tracked.user(body.stamp);
+            drop(self.topics.transforms.send(encode::skeleton(body, user)));
         }
+    }
+}
+
+/// Whom the skeleton tracker follows: one who was lost gets a new number, as `openni_tracker` gives it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tracked {
+    user: u32,
+    last: Option<Stamp>,
+}
+
+impl Tracked {
+    fn user(&mut self, seen: Stamp) -> u32 {
+        let is_lost = self.last.replace(seen).is_none_or(|last| seen.since(last) > LOST_AFTER);
+        self.user += u32::from(is_lost);
+        self.user
     }
 }
 
@@ -293,5 +313,13 @@ mod tests {
             baxter_core_msgs::JointCommand { command: Vec::new(), ..whole },
         ];
         assert!(spoiled.iter().all(|message| commanded(Side::Left, message).is_none()));
+    }
+
+    #[test]
+    fn a_user_who_was_lost_comes_back_under_a_new_number() {
+        let at = |milliseconds: u64| Stamp::from_nanoseconds(milliseconds * 1_000_000);
+        let mut tracked = Tracked::default();
+        assert_eq!([10_000, 10_033, 10_900].map(|moment| tracked.user(at(moment))), [1, 1, 1]);
+        assert_eq!([12_000, 12_033].map(|moment| tracked.user(at(moment))), [2, 2]);
     }
 }

@@ -3,6 +3,7 @@
 //! rosrust kills a callback for ever when it panics, and never reconnects a link that broke while its publisher lived: so
 //! each callback is caught, and the watch may make the subscription anew.
 
+use super::definitions::Definition;
 use super::error::RosError;
 use super::monitor::{Monitor, now};
 use super::node::resolved;
@@ -54,8 +55,9 @@ impl Subscription {
         sink: &Sink,
         decode: impl Fn(T) -> Decoded + Send + Sync + 'static,
     ) -> Result<Self, RosError> {
-        let monitor = Monitor::new(need.topic, T::msg_type(), need.expected_hertz, need.required)
-            .resolved_as(resolved(need.topic));
+        let definition = Definition { kind: T::msg_type(), digest: T::md5sum() };
+        let monitor =
+            Monitor::new(need.topic, definition, need.expected_hertz, need.required).resolved_as(resolved(need.topic));
         let (decode, sink, watched) = (Arc::new(decode), Arc::clone(sink), monitor.clone());
         let make: Make = Box::new(move || {
             let (decode, sink, monitor) = (Arc::clone(&decode), Arc::clone(&sink), watched.clone());
@@ -65,6 +67,11 @@ impl Subscription {
         });
         let current = Some(make()?);
         Ok(Self { monitor, make, current })
+    }
+
+    /// The same where messages of one type are read by the definitions of these digests.
+    pub(super) fn reading(self, digests: Vec<String>) -> Self {
+        Self { monitor: self.monitor.reading(digests), ..self }
     }
 
     /// Gives the old subscription up and makes a new one.
@@ -90,6 +97,10 @@ mod tests {
     use super::*;
     use std::sync::Mutex;
 
+    fn definition() -> Definition {
+        Definition { kind: "type".into(), digest: "digest".into() }
+    }
+
     fn collecting() -> (Sink, Arc<Mutex<Vec<Input>>>) {
         let inputs = Arc::new(Mutex::new(Vec::new()));
         let kept = Arc::clone(&inputs);
@@ -99,7 +110,7 @@ mod tests {
     #[test]
     fn a_decoder_that_panics_is_told_and_the_next_message_is_read() {
         let (sink, inputs) = collecting();
-        let monitor = Monitor::new("/topic", "type".into(), (1.0, 2.0), true);
+        let monitor = Monitor::new("/topic", definition(), (1.0, 2.0), true);
         let decode = |number: u32| if number == 0 { panic!("broken") } else { Decoded::Input(Input::Tick) };
         receive(0, &decode, &sink, &monitor);
         receive(1, &decode, &sink, &monitor);
@@ -110,7 +121,7 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_counted() {
         let (sink, inputs) = collecting();
-        let monitor = Monitor::new("/topic", "type".into(), (1.0, 2.0), true);
+        let monitor = Monitor::new("/topic", definition(), (1.0, 2.0), true);
         receive((), &|()| Decoded::Unusable, &sink, &monitor);
         assert_eq!((monitor.report(now()).unusable, inputs.lock().unwrap().len()), (1, 0));
     }

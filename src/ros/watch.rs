@@ -3,10 +3,11 @@
 //! - The master gone or back is told. A master that came back knows nothing of this node: everything is registered again,
 //!   and our own subscribers are told the publishers, without touching streams that still run.
 //! - A publisher that lives but has gone silent is subscribed to anew: a broken link is never taken up again by itself.
-//! - A foreign publisher on a topic that commands the robot is named.
+//! - A foreign publisher on a topic that commands the robot is named, and so is one that publishes by another definition.
 //!
 //! All of this waits for the network, so it has a thread of its own, away from screen, stop and supervisor.
 
+use super::definitions::{Definitions, Publisher};
 use super::graph::{Graph, topic_types};
 use super::monitor::now;
 use super::node::{MASTER_LIMIT, resolved};
@@ -50,6 +51,8 @@ pub(super) struct Watch {
     is_lost: bool,
     /// Topics on which nobody else may publish, as the master knows them.
     guarded: Vec<String>,
+    /// Asks publishers for their definitions; `None` where nothing is listened to.
+    definitions: Option<Definitions>,
     foreign: BTreeSet<(String, String)>,
 }
 
@@ -65,6 +68,7 @@ impl Watch {
             registrations: Registrations::default(),
             is_lost: false,
             guarded: Vec::new(),
+            definitions: None,
             foreign: BTreeSet::new(),
         }
     }
@@ -76,6 +80,9 @@ impl Watch {
 
     /// Starts the thread; it ends soon after `ended` is set, and gives its subscriptions up.
     pub(super) fn start(mut self, ended: Arc<AtomicBool>) -> std::io::Result<thread::JoinHandle<()>> {
+        if !self.subscriptions.is_empty() {
+            self.definitions = Some(Definitions::start(&self.master, &self.node, Arc::clone(&self.sink))?);
+        }
         thread::Builder::new().name("ros-watch".into()).spawn(move || {
             while !ended.load(Ordering::SeqCst) {
                 self.look();
@@ -185,14 +192,22 @@ impl Watch {
     }
 
     fn renew_silent(&mut self, graph: &Graph) {
+        let mut publishers = Vec::new();
         for (subscription, renewed) in &mut self.subscriptions {
-            let monitor = &subscription.monitor;
-            monitor.set_publishers(graph.publishers_of(&monitor.resolved).to_vec());
-            if monitor.is_silent(now(), SILENCE) && renewed.elapsed() > RENEWAL {
+            let monitor = subscription.monitor.clone();
+            let nodes = graph.publishers_of(&monitor.resolved);
+            monitor.set_publishers(nodes.to_vec());
+            let is_silent = monitor.is_silent(now(), SILENCE);
+            let publisher = |node: &String| Publisher { node: node.clone(), monitor: monitor.clone(), is_silent };
+            publishers.extend(nodes.iter().map(publisher));
+            if is_silent && renewed.elapsed() > RENEWAL {
                 // Where it fails, the topic stays silent, is shown as such, and is tried again.
                 let _ = subscription.renew();
                 *renewed = Instant::now();
             }
+        }
+        if let Some(definitions) = &self.definitions {
+            definitions.look_at(publishers);
         }
     }
 }

@@ -116,7 +116,7 @@ impl World {
             garment: setup.garment_model(),
             person: setup.person.clone(),
             reactions,
-            camera: Camera::new(setup.pose_noise_metres, Random::new(seed, Purpose::Camera)),
+            camera: Camera::new(setup.pose_noise_metres, Random::new(seed, Purpose::Camera), setup.arms_hide_joints),
             faults: setup.faults.clone(),
             losses: Random::new(seed, Purpose::Faults),
             start: None,
@@ -220,7 +220,7 @@ impl World {
         output.robot.push(self.switch.state(now));
         if !faults.lost_camera
             && !faults.lost_pose
-            && let Some(pose) = self.camera.look(now, self.ticks, &body, &self.person)
+            && let Some(pose) = self.camera.look(now, self.ticks, &body, &self.person, &poses)
         {
             output.bodies.push(pose);
         }

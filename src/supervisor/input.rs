@@ -101,6 +101,17 @@ pub enum LinkEvent {
         /// The node.
         node: String,
     },
+    /// A node publishes by another definition than is read here: nothing of what it sends can be used.
+    WrongDefinition {
+        /// The topic.
+        topic: String,
+        /// The node.
+        node: String,
+        /// What it publishes: type and digest.
+        found: String,
+        /// What is read: type and digest.
+        wanted: String,
+    },
     /// A motion was under way when its handle was dropped, or a worker of the engine died.
     WorkerLost {
         /// Which one.

@@ -13,7 +13,7 @@ import rospy  # noqa: E402
 import rostest  # noqa: E402
 from baxter_core_msgs.msg import AssemblyState, EndpointState, JointCommand  # noqa: E402
 from geometry_msgs.msg import TransformStamped  # noqa: E402
-from sensor_msgs.msg import JointState  # noqa: E402
+from sensor_msgs.msg import Image, JointState  # noqa: E402
 from std_msgs.msg import Bool, Empty, Float64  # noqa: E402
 from tf2_msgs.msg import TFMessage  # noqa: E402
 
@@ -257,7 +257,19 @@ class NodeUnderTest(unittest.TestCase):
         self.valet.type("stop")
         self.until("stopped again", lambda: self.robot.stopped)
 
-    def test_8_the_way_out_says_that_a_stop_is_latched(self):
+    def test_8_a_publisher_with_another_definition_is_named_with_both_digests(self):
+        class OtherImage(Image):
+            _md5sum = "0123456789abcdef0123456789abcdef"
+
+        topic = "/camera/depth/image_raw"
+        since = self.valet.mark()
+        other = rospy.Publisher(topic, OtherImage, queue_size=1)
+        line = self.valet.await_line("publishes " + topic, since=since)
+        for part in (rospy.get_name(), "sensor_msgs/Image (md5 %s)" % OtherImage._md5sum, "(md5 %s)" % Image._md5sum):
+            self.assertIn(part, line)
+        other.unregister()
+
+    def test_9_the_way_out_says_that_a_stop_is_latched(self):
         self.valet.type("quit")
         self.assertEqual(self.valet.process.wait(30), 4)
 

@@ -11,7 +11,7 @@ import rospy  # noqa: E402
 import rostest  # noqa: E402
 from baxter_core_msgs.msg import AssemblyState, EndpointState, JointCommand  # noqa: E402
 from sensor_msgs.msg import JointState  # noqa: E402
-from std_msgs.msg import Bool, Empty  # noqa: E402
+from std_msgs.msg import Bool, Empty, Float64  # noqa: E402
 
 JOINTS = ["left_" + joint for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2")]
 
@@ -31,6 +31,7 @@ class SimulatedRobot(unittest.TestCase):
         cls.reset = rospy.Publisher("/robot/set_super_reset", Empty, queue_size=1)
         cls.enable = rospy.Publisher("/robot/set_super_enable", Bool, queue_size=1)
         cls.command = rospy.Publisher("/robot/limb/left/joint_command", JointCommand, queue_size=1)
+        cls.timeout = rospy.Publisher("/robot/limb/left/joint_command_timeout", Float64, queue_size=1, latch=True)
 
     @classmethod
     def take_state(cls, message):
@@ -96,7 +97,29 @@ class SimulatedRobot(unittest.TestCase):
             lambda: self.ask(goal),
         )
 
-    def test_4_stopped_it_stands_until_reset_and_enable(self):
+    def test_4_after_the_last_command_it_holds_within_the_time_out(self):
+        before = self.positions()
+        # Far enough that the arm is still on its way when the commands end.
+        goal = [position - 0.9 * (joint == "left_s0") for joint, position in zip(JOINTS, before)]
+        self.until("under way", lambda: before[0] - self.positions()[0] > 0.05, lambda: self.ask(goal))
+        # 0.2 s of the robot, and a hundred beats of room for a machine that is busy.
+        rospy.sleep(1.2)
+        held = self.positions()
+        rospy.sleep(1.0)
+        self.assertEqual(held, self.positions(), "it holds")
+        self.assertGreater(held[0] - goal[0], 0.2, "and has not gone on to the goal")
+        self.assertTrue(self.state.enabled)
+
+    def test_5_a_longer_time_out_carries_one_command_to_its_goal(self):
+        self.until("a listener", lambda: self.timeout.get_num_connections() > 0)
+        self.timeout.publish(30.0)
+        rospy.sleep(0.5)
+        goal = [position + 0.3 * (joint == "left_s0") for joint, position in zip(JOINTS, self.positions())]
+        self.ask(goal)
+        self.until("at the goal", lambda: max(abs(a - b) for a, b in zip(goal, self.positions())) < 0.02)
+        self.timeout.publish(0.2)
+
+    def test_6_stopped_it_stands_until_reset_and_enable(self):
         self.until("stopped", lambda: self.state.stopped, lambda: self.stop.publish())
         self.assertFalse(self.state.enabled)
         rospy.sleep(0.3)

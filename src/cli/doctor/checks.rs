@@ -143,6 +143,16 @@ fn topic(report: &TopicReport) -> Check {
         report.hertz,
         if report.publishers.is_empty() { "nobody".into() } else { report.publishers.join(" ") }
     );
+    if let Some((node, found)) = report.wrong.first() {
+        let hint = "bring the message packages of both to one version: `rosmsg md5` tells the digest";
+        return Check::new(
+            &report.topic,
+            Verdict::Fault,
+            format!("{node} publishes {found}, which valet cannot read"),
+            hint,
+        )
+        .aged(report.age_seconds);
+    }
     let is_rated = (least..=most).contains(&report.hertz);
     let (verdict, hint) = match (report.age_seconds, report.required) {
         (None, true) => {
@@ -305,6 +315,7 @@ mod tests {
             jitter_seconds: 0.0,
             unusable: 0,
             publishers: vec![],
+            wrong: vec![],
             required,
         };
         assert_eq!(topic(&report(Some(0.01), 100.0, true)).verdict, Verdict::Good);
@@ -312,6 +323,9 @@ mod tests {
         assert_eq!(topic(&report(Some(2.0), 0.0, true)).verdict, Verdict::Stale);
         assert_eq!(topic(&report(None, 0.0, true)).verdict, Verdict::Fault);
         assert_eq!(topic(&report(None, 0.0, false)).verdict, Verdict::Good);
+        let wrong = vec![("/old_robot".to_owned(), "k (md5 1)".to_owned())];
+        let line = topic(&TopicReport { wrong, ..report(None, 0.0, false) }).line();
+        assert!(line.starts_with("FAULT") && line.contains("/old_robot publishes k (md5 1)"), "{line}");
     }
 
     #[test]

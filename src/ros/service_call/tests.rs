@@ -1,6 +1,7 @@
 use super::*;
 use crate::ros::message::std_srvs::Trigger;
 use crate::ros::message::std_srvs::{TriggerReq, TriggerRes};
+use std::collections::HashMap;
 use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
 use std::thread;

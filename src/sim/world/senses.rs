@@ -4,7 +4,7 @@ use super::super::faults::ArmFaults;
 use super::super::person::{ArmPoints, SimulatedPerson};
 use super::super::random::Random;
 use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide};
-use crate::geometry::{Point, Vector, Wrench};
+use crate::geometry::{Point, Pose, Vector, Wrench};
 use crate::time::Stamp;
 use nalgebra::Matrix3;
 use std::time::Duration;
@@ -83,11 +83,21 @@ impl ImpactDetection {
 pub(super) struct Camera {
     noise: f64,
     random: Random,
+    /// Whether the grippers hide joints from it.
+    arms_hide_joints: bool,
+}
+
+/// A gripper and the sleeve that it holds open (some 0.2 m across, as a jacket's armhole is) cover what is so near, in metres.
+const COVER_METRES: f64 = 0.12;
+
+/// True where a gripper and what it holds cover a joint.
+fn is_hidden(joint: &Point, grippers: &PerSide<Pose>) -> bool {
+    grippers.iter().any(|(_, tip)| (joint.coords - tip.translation.vector).norm() < COVER_METRES)
 }
 
 impl Camera {
-    pub(super) const fn new(noise: f64, random: Random) -> Self {
-        Self { noise, random }
+    pub(super) const fn new(noise: f64, random: Random, arms_hide_joints: bool) -> Self {
+        Self { noise, random, arms_hide_joints }
     }
 
     /// The person's pose at a beat, where a frame is due.
@@ -97,18 +107,19 @@ impl Camera {
         tick: u64,
         arms: &PerSide<ArmPoints>,
         person: &SimulatedPerson,
+        grippers: &PerSide<Pose>,
     ) -> Option<BodyPose> {
         let frame = |tick: u64| tick * FRAMES_A_SECOND / TICKS_A_SECOND;
         if tick > 0 && frame(tick) == frame(tick - 1) {
             return None;
         }
-        let arms = PerSide::from_fn(|side| self.arm(arms.get(side)));
+        let arms = PerSide::from_fn(|side| self.arm(arms.get(side), grippers));
         let [x, y, z] = person.chest_metres;
-        let neck = Some(self.joint(&Point::new(x, y, z + NECK)));
+        let neck = self.joint(&Point::new(x, y, z + NECK), grippers);
         Some(BodyPose { stamp: now, arms, neck })
     }
 
-    fn arm(&mut self, points: &ArmPoints) -> ArmPose {
+    fn arm(&mut self, points: &ArmPoints, grippers: &PerSide<Pose>) -> ArmPose {
         let mut arm = ArmPose::default();
         for (joint, point) in [
             (Joint::Hand, points.hand),
@@ -118,17 +129,43 @@ impl Camera {
             (Joint::UpperArm, nalgebra::center(&points.elbow, &points.shoulder)),
             (Joint::Shoulder, points.shoulder),
         ] {
-            arm.set(joint, Some(self.joint(&point)));
+            arm.set(joint, self.joint(&point, grippers));
         }
         arm
     }
 
-    fn joint(&mut self, point: &Point) -> JointEstimate {
-        JointEstimate {
+    /// A joint with its noise; `None` where a gripper hides it.
+    fn joint(&mut self, point: &Point, grippers: &PerSide<Pose>) -> Option<JointEstimate> {
+        let estimate = JointEstimate {
             position: point + self.random.normal_vector(self.noise),
             covariance: Matrix3::identity() * self.noise.powi(2).max(1e-8),
             confidence: 0.95,
             evidence: Evidence::Seen,
+        };
+        (!(self.arms_hide_joints && is_hidden(point, grippers))).then_some(estimate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    #[test]
+    fn before_a_trial_the_whole_person_is_seen() {
+        use crate::sim::world::{World, WorldSetup};
+        let setup = WorldSetup { arms_hide_joints: true, ..WorldSetup::default() };
+        let mut world = World::new(&setup).unwrap();
+        let body = world.step(Stamp::from_nanoseconds(1_000_000_000)).bodies.pop().unwrap();
+        for (side, arm) in body.arms.iter() {
+            for joint in [Joint::Hand, Joint::Elbow, Joint::Shoulder] {
+                assert!(arm.joint(joint).is_some(), "{side} {joint}");
+            }
         }
+    }
+
+    #[test]
+    fn a_joint_is_hidden_by_a_gripper_that_has_come_to_it() {
+        let at = |x: f64| Pose::translation(x, 0.4, 0.0);
+        let hides = |x: f64| is_hidden(&Point::new(0.8, 0.4, 0.0), &PerSide { left: at(0.0), right: at(x) });
+        assert!(hides(0.75) && !hides(0.6));
     }
 }

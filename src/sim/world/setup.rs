@@ -37,6 +37,8 @@ pub struct WorldSetup {
     pub dynamics: ArmDynamics,
     /// Standard deviation of a joint's position as the pose finder gives it, in metres on each axis.
     pub pose_noise_metres: f64,
+    /// Whether the pose finder loses joints that the robot's grippers hide from its camera.
+    pub arms_hide_joints: bool,
     /// The person's how manieth experiment this is, from 0: in the first the preferred movement is further off.
     pub experiment: u32,
     /// What goes wrong, and when.
@@ -55,6 +57,7 @@ impl Default for WorldSetup {
             dynamics: ArmDynamics::default(),
             // The pose finder averages the pixels of a part: a few millimetres.
             pose_noise_metres: 0.004,
+            arms_hide_joints: false,
             experiment: 1,
             faults: FaultPlan::default(),
             seed: 1,
