@@ -18,6 +18,7 @@ mod fit;
 mod images;
 mod key;
 mod keys;
+mod log;
 mod profile;
 mod recording;
 mod replay;

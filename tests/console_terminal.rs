@@ -3,6 +3,7 @@
 
 #![allow(
     clippy::unwrap_used,
+    clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
     clippy::indexing_slicing,
@@ -12,7 +13,7 @@
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 use std::io::{Read, Write};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -183,6 +184,52 @@ fn without_a_terminal_it_says_what_to_do() {
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success() && text.contains("--headless"), "{text}");
     assert!(output.stdout.is_empty());
+}
+
+/// The state of a process and its parent; `None` where there is none.
+fn process(id: u32) -> Option<(char, u32)> {
+    let text = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+    // The name in brackets may hold anything.
+    let mut rest = text.rsplit(')').next()?.split_whitespace();
+    Some((rest.next()?.chars().next()?, rest.next()?.parse().ok()?))
+}
+
+/// The simulator that a demo has started.
+fn simulator_of(demo: u32) -> Option<u32> {
+    let entries = std::fs::read_dir("/proc").ok()?.flatten();
+    let mut ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    ids.find(|id| {
+        let command = std::fs::read_to_string(format!("/proc/{id}/cmdline")).unwrap_or_default();
+        process(*id).is_some_and(|(_, parent)| parent == demo) && command.contains("embedded")
+    })
+}
+
+/// Waits until something is there; `None` where it does not come.
+fn awaited<T>(mut look: impl FnMut() -> Option<T>) -> Option<T> {
+    let start = Instant::now();
+    while start.elapsed() < PATIENCE {
+        if let Some(found) = look() {
+            return Some(found);
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    None
+}
+
+#[test]
+fn a_demo_that_is_killed_takes_its_simulator_with_it() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_valet"));
+    command.args(["demo", "--headless", "--ros", "--no-record"]).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut demo = command.spawn().unwrap();
+    let simulator = awaited(|| simulator_of(demo.id()));
+    demo.kill().unwrap();
+    demo.wait().unwrap();
+    let simulator = simulator.expect("no simulator was started");
+    let gone = awaited(|| process(simulator).is_none_or(|(state, _)| state == 'Z').then_some(()));
+    if gone.is_none() {
+        Command::new("kill").args(["-9", &simulator.to_string()]).status().unwrap();
+    }
+    assert!(gone.is_some(), "the simulator lives on without its demo");
 }
 
 /// Variable by which this test program, started by itself in a pseudo-terminal, knows that it is to panic.

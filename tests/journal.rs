@@ -8,10 +8,12 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 use valet::body::Side;
 use valet::command::{Command, Origin};
+use valet::config::Key;
 use valet::geometry::{Pose, Wrench};
 use valet::headless::{ScriptedOperator, VirtualTrial};
 use valet::record::{
-    Header, JournalError, JournalWriter, Recorder, RecorderNotice, Replay, Step, Told, read, write_bag, write_csv,
+    Header, JournalError, JournalFile, JournalWriter, Recorder, RecorderNotice, Replay, Step, Told, close_journal,
+    read, read_header, write_bag, write_csv,
 };
 use valet::sim::world::WorldSetup;
 use valet::snapshot::{Level, Outcome, Watermark};
@@ -158,6 +160,31 @@ fn foreign_and_future_files_are_refused_in_words() {
     });
     let error = read(&path, |_, _| {}).unwrap_err();
     assert!(matches!(error, JournalError::Future { found: 9, .. }), "{error}");
+}
+
+#[test]
+fn an_encrypted_journal_is_read_with_its_key_alone_and_a_cut_one_as_far_as_it_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), 12);
+    let (all, _) = steps_of(&path);
+    let key = |words: &str| Key::Passphrase(words.to_owned().into());
+    let closed = close_journal(&path, &key("correct horse battery")).unwrap();
+    assert!(!path.exists(), "the plain file is gone");
+    let locked = read(&closed, |_, _| {}).unwrap_err();
+    assert!(matches!(locked, JournalError::Locked { .. }) && locked.to_string().contains("--key"), "{locked}");
+    let wrong = JournalFile::new(&closed, Some(key("another horse battery")));
+    let refused = read(&wrong, |_, _| {}).unwrap_err().to_string();
+    assert!(refused.contains(".mcap.age") && refused.contains("key"), "{refused}");
+    let right = JournalFile::new(&closed, Some(key("correct horse battery")));
+    assert_eq!(read_header(&right).unwrap().profile, "p-01");
+    let mut steps = Vec::new();
+    let reading = read(&right, |_, step| steps.push(step)).unwrap();
+    assert!(reading.finished && reading.problems.is_empty() && steps == all);
+    let bytes = std::fs::read(&closed).unwrap();
+    std::fs::write(&closed, &bytes[..bytes.len() * 8 / 10]).unwrap();
+    let reading = read(&right, |_, _| {}).unwrap();
+    assert!(reading.steps * 10 > all.len() as u64 * 6, "{} of {}", reading.steps, all.len());
+    assert!(reading.problems.iter().any(|problem| problem.what.contains("encrypted file is cut")), "{reading:?}");
 }
 
 /// What a recorder says by itself, gathered.

@@ -26,10 +26,9 @@ impl<S: CommandSink> CommandSink for Choosing<S> {
     fn send(&mut self, command: Command) -> Result<(), String> {
         let choice = match command {
             Command::SelectProfile(value) => Choice { option: "--profile", value },
-            Command::SelectGarment(_) if std::env::args().nth(1).as_deref() != Some("console") => {
-                return Err("the simulated garment is chosen with the person's profile".into());
+            Command::SelectGarment(value) => {
+                Choice { option: garment_option(std::env::args().nth(1).as_deref()), value }
             }
-            Command::SelectGarment(value) => Choice { option: "--garment", value },
             other => return self.inner.send(other),
         };
         self.chosen.set(choice).map_err(|_| "another choice is being taken up".into())
@@ -38,6 +37,11 @@ impl<S: CommandSink> CommandSink for Choosing<S> {
     fn begins_anew(&self) -> bool {
         self.chosen.get().is_some()
     }
+}
+
+/// The option that names the garment: the demo's `--garment` names the model by which it is simulated.
+fn garment_option(command: Option<&str>) -> &'static str {
+    if command == Some("console") { "--garment" } else { "--garment-name" }
 }
 
 /// Takes the place of this process with a new one that has the choice. Only returns where that fails.
@@ -53,8 +57,10 @@ fn with_choice(typed: impl Iterator<Item = String>, choice: &Choice) -> Vec<Stri
     let mut kept = Vec::new();
     let mut typed = typed.peekable();
     while let Some(argument) = typed.next() {
+        let named = kept.first().map(String::as_str);
+        let garment = garment_option(named);
         let dropped = |option: &str| {
-            option == choice.option || option == "--port" || (option == "--garment" && choice.option == "--profile")
+            option == choice.option || option == "--port" || (option == garment && choice.option == "--profile")
         };
         match argument.split_once('=') {
             Some((option, _)) if dropped(option) => {}
@@ -84,6 +90,10 @@ mod tests {
         assert_eq!(after(&typed, "--profile", "ben"), ["console", "--seed", "3", "__name:=left", "--profile", "ben"]);
         let kept = ["console", "--profile", "anna", "--seed", "3", "__name:=left", "--garment", "gown"];
         assert_eq!(after(&typed, "--garment", "gown"), kept);
+        let demo = ["demo", "--garment", "cloth", "--garment-name", "gown", "--port", "4711"];
+        assert_eq!(after(&demo, "--profile", "ben"), ["demo", "--garment", "cloth", "--profile", "ben"]);
+        let named = ["demo", "--garment", "cloth", "--garment-name", "coat"];
+        assert_eq!(after(&demo, "--garment-name", "coat"), named);
         assert_eq!(after(&["demo", "--port", "4711"], "--profile", "ben"), ["demo", "--profile", "ben"]);
         assert_eq!(after(&[], "--profile", "ben"), ["demo", "--profile", "ben"]);
     }

@@ -7,7 +7,7 @@ use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::planning::choose_planner;
-use super::recording::RecordArguments;
+use super::recording::{RecordArguments, sealed};
 use super::screen::ScreenArguments;
 use super::session::{Opening, Session};
 use super::sim::ros_failure;
@@ -105,10 +105,10 @@ fn operate(arguments: &Arguments, node: Node, prepared: Prepared) -> Result<(), 
         let mut reader = arguments.screen.reader(arguments.config.clone());
         show(&session, &options, &mut reader, &chosen)
     };
-    let recorded = session.close();
+    let recorded = session.close().map(|path| sealed(path, &person, key.as_ref())).transpose()?;
     if let Some(trial) = recorded.as_deref().filter(|_| person.keeps_learned() && !arguments.dry_run) {
         let mut output = Output::new(arguments.json);
-        if let Err(failure) = super::profile::learn(&mut output, &person, Path::new(trial), key.as_ref()) {
+        if let Err(failure) = super::profile::learn(&mut output, &person, trial, key.as_ref()) {
             // How the trial ended is what the exit code tells.
             super::output::complain(&failure);
         }
@@ -198,9 +198,11 @@ pub(super) fn show(
 }
 
 /// Says on leaving where the record is, and turns the reason into an exit code.
-pub(super) fn conclude(reason: Result<ExitReason, Failure>, recorded: Option<&str>) -> Result<(), Failure> {
+pub(super) fn conclude(reason: Result<ExitReason, Failure>, recorded: Option<&Path>) -> Result<(), Failure> {
     if let Some(path) = recorded {
-        Output::new(false).line(format!("recorded in {path}"))?;
+        let mut output = Output::new(false);
+        output.line(format!("recorded in {}", path.display()))?;
+        output.line(format!("the program's own log is in {}", Places::of_this_machine().logs.display()))?;
     }
     match reason? {
         ExitReason::QuitAfterStop => Err(Failure::OperatorStop("the emergency stop was used".into())),

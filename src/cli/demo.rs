@@ -2,10 +2,11 @@
 
 mod wire;
 
+use super::console::choose_garment;
 use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
-use super::recording::{RecordArguments, warn};
+use super::recording::{RecordArguments, sealed, warn};
 use super::screen::ScreenArguments;
 use super::sim::GarmentModel;
 use crate::config::{LoadedProfile, Places, Settings};
@@ -43,6 +44,9 @@ pub(super) struct Arguments {
     /// The model of the garment.
     #[arg(long, value_enum, default_value_t)]
     pub(super) garment: GarmentModel,
+    /// The garment, by its name in the profile; the first one there where none is named.
+    #[arg(long, value_name = "NAME")]
+    pub(super) garment_name: Option<String>,
     /// How many trials to run, with consecutive seeds.
     #[arg(long, default_value_t = 1)]
     pub(super) trials: u32,
@@ -72,6 +76,7 @@ impl Default for Arguments {
             profile: None,
             strategy: None,
             garment: GarmentModel::default(),
+            garment_name: None,
             trials: 1,
             json: false,
             record: RecordArguments::default(),
@@ -110,7 +115,7 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
     let world = WorldSetup {
         seed,
         person: profile.simulated.clone().unwrap_or_default(),
-        garment: profile.garment(None).cloned().unwrap_or_default(),
+        garment: profile.garment(arguments.garment_name.as_deref()).cloned().unwrap_or_default(),
         backend: arguments.garment.into(),
         ..WorldSetup::default()
     };
@@ -136,6 +141,7 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
     recorded.map_err(Failure::fault)?;
     if let Some(journal) = journal {
         let path = journal.finish().map_err(Failure::fault)?;
+        let path = sealed(path, &person, arguments.key.given()?.as_ref())?;
         // Not on stdout: the same seed prints the same bytes there.
         warn(&format!("recorded in {}", path.display()));
     }
@@ -152,6 +158,7 @@ fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, 
     let key = arguments.key.given()?;
     let person = LoadedProfile::find_with(name, &places, key.as_ref()).map_err(Failure::configuration)?;
     let mut setup = settings.setup_for(&person, seed, Watermark::Demo).map_err(Failure::configuration)?;
+    choose_garment(&mut setup, &person, arguments.garment_name.as_deref())?;
     setup.settings.warm_start |= arguments.warm_start;
     Ok((person, setup, settings))
 }

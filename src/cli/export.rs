@@ -1,8 +1,9 @@
 //! `valet export`: a recorded trial as a rosbag or as tables.
 
 use super::exit::Failure;
+use super::key::KeyArguments;
 use super::output::Output;
-use crate::record::{Reading, write_bag, write_csv};
+use crate::record::{JournalFile, Reading, write_bag, write_csv};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -20,6 +21,8 @@ pub(super) struct Arguments {
     /// Leave out free text and absolute time.
     #[arg(long)]
     anonymous: bool,
+    #[command(flatten)]
+    key: KeyArguments,
     /// Print one JSON object a line.
     #[arg(long)]
     json: bool,
@@ -41,14 +44,16 @@ struct Exported {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = Output::new(arguments.json);
-    let beside = match arguments.format {
-        Format::Bag => arguments.trial.with_extension("bag"),
-        Format::Csv => arguments.trial.with_extension("csv"),
+    let journal = JournalFile::new(&arguments.trial, arguments.key.given()?);
+    let ending = match arguments.format {
+        Format::Bag => "bag",
+        Format::Csv => "csv",
     };
+    let beside = arguments.trial.with_file_name(format!("{}.{ending}", journal.name()));
     let out = arguments.out.clone().unwrap_or(beside);
     let reading: Reading = match arguments.format {
-        Format::Bag => write_bag(&arguments.trial, &out, arguments.anonymous),
-        Format::Csv => write_csv(&arguments.trial, &out, arguments.anonymous),
+        Format::Bag => write_bag(&journal, &out, arguments.anonymous),
+        Format::Csv => write_csv(&journal, &out, arguments.anonymous),
     }
     .map_err(Failure::configuration)?;
     for problem in &reading.problems {

@@ -4,7 +4,7 @@ use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use crate::config::{Key, LoadedProfile, Places, Profile, profile_names, read_secret, write_whole};
-use crate::record::{learned_in, read_header};
+use crate::record::{JournalFile, close_journal, learned_in, read_header};
 use clap::Subcommand;
 use serde::Serialize;
 use std::fs;
@@ -45,16 +45,16 @@ enum Action {
         #[command(flatten)]
         key: KeyArguments,
     },
-    /// Encrypt a profile's file; the plain file is removed.
+    /// Encrypt a profile's file or a recorded trial; the plain file is removed.
     Encrypt {
-        /// Name or file.
+        /// Name or file; a journal (`*.mcap`).
         profile: String,
         #[command(flatten)]
         key: KeyArguments,
     },
-    /// Decrypt a profile's file; the encrypted file is removed.
+    /// Decrypt a profile's file or a recorded trial; the encrypted file is removed.
     Decrypt {
-        /// The encrypted file (`*.toml.age`).
+        /// The encrypted file (`*.toml.age`, `*.mcap.age`).
         file: PathBuf,
         #[command(flatten)]
         key: KeyArguments,
@@ -76,6 +76,8 @@ enum Action {
         /// Really erase. Without it, only what would be erased is listed.
         #[arg(long)]
         yes: bool,
+        #[command(flatten)]
+        key: KeyArguments,
         /// Print one JSON object a line.
         #[arg(long)]
         json: bool,
@@ -102,19 +104,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Learn { trial, profile, key } => {
             let name = match profile {
                 Some(name) => name.clone(),
-                None => read_header(trial).map_err(Failure::configuration)?.profile,
+                None => read_header(JournalFile::new(trial, key.given()?)).map_err(Failure::configuration)?.profile,
             };
             learn(&mut output, &find(&name, key)?, trial, key.given()?.as_ref())
+        }
+        Action::Encrypt { profile, key } if is_journal(Path::new(profile)) => {
+            let closed = close_journal(Path::new(profile), &key.needed()?).map_err(Failure::configuration)?;
+            output.line(format!("encrypted: {}", closed.display()))
         }
         Action::Encrypt { profile, key } => {
             encrypt(&mut output, &find(profile, &KeyArguments::default())?, &key.needed()?)
         }
         Action::Decrypt { file, key } => decrypt(&mut output, file, &key.needed()?),
         Action::Export { profile, key } => output.line(exported(find(profile, key)?.profile)?.trim_end()),
-        Action::Forget { id, trials, yes, json } => {
+        Action::Forget { id, trials, yes, key, json } => {
             let default = [places.trials.clone(), places.demos.clone()];
             let folders = if trials.is_empty() { &default[..] } else { trials };
-            forget(&mut Output::new(*json), &places, id, folders, *yes)
+            let key = key.given()?;
+            let files = files_of(id, &places, folders, key.as_ref());
+            if files.is_empty() {
+                return Err(nothing_kept(id, &places, folders));
+            }
+            forget(&mut Output::new(*json), id, files, *yes)
         }
     }
 }
@@ -126,7 +137,7 @@ pub(super) fn learn(
     trial: &Path,
     key: Option<&Key>,
 ) -> Result<(), Failure> {
-    let learned = learned_in(trial).map_err(Failure::configuration)?;
+    let learned = learned_in(JournalFile::new(trial, key.cloned())).map_err(Failure::configuration)?;
     if learned.is_empty() {
         return output.line(format!("{}: no arm was dressed to its end, nothing was learned", trial.display()));
     }
@@ -187,11 +198,20 @@ fn decrypt(output: &mut Output, file: &Path, key: &Key) -> Result<(), Failure> {
     }
     let plain = read_secret(file, key).map_err(Failure::configuration)?;
     let target = file.with_extension("");
+    if is_journal(&target) {
+        write_whole(&target, &plain).map_err(Failure::fault)?;
+        fs::remove_file(file).map_err(|error| named(file, error))?;
+        return output.line(format!("{} is readable again", target.display()));
+    }
     let text = String::from_utf8(plain).map_err(|error| named(file, error))?;
     LoadedProfile::parse(&target, &text).map_err(Failure::configuration)?;
     write_whole(&target, text.as_bytes()).map_err(Failure::fault)?;
     fs::remove_file(file).map_err(|error| named(file, error))?;
     output.line(format!("{} is readable again", target.display()))
+}
+
+fn is_journal(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "mcap")
 }
 
 /// A profile without free text and without dates.
@@ -210,22 +230,25 @@ struct Receipt<'a> {
     files: Vec<PathBuf>,
 }
 
-fn forget(output: &mut Output, places: &Places, id: &str, trials: &[PathBuf], erase: bool) -> Result<(), Failure> {
+/// Everything that is kept of a person: profile, journals and what stands beside them.
+fn files_of(id: &str, places: &Places, trials: &[PathBuf], key: Option<&Key>) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = places
         .profiles
         .iter()
         .flat_map(|folder| [folder.join(format!("{id}.toml")), folder.join(format!("{id}.toml.age"))])
         .filter(|path| path.is_file())
         .collect();
-    files.extend(trials.iter().flat_map(|folder| trials_of(id, folder)));
-    if files.is_empty() {
-        let folders: Vec<_> = trials.iter().map(|folder| folder.display().to_string()).collect();
-        return Err(Failure::Configuration(format!(
-            "nothing is kept under {id}: looked in {} and {}",
-            places.profile_folders(),
-            folders.join(", ")
-        )));
-    }
+    files.extend(trials.iter().flat_map(|folder| trials_of(id, folder, key)));
+    files
+}
+
+fn nothing_kept(id: &str, places: &Places, trials: &[PathBuf]) -> Failure {
+    let folders: Vec<_> = trials.iter().map(|folder| folder.display().to_string()).collect();
+    let (profiles, folders) = (places.profile_folders(), folders.join(", "));
+    Failure::Configuration(format!("nothing is kept under {id}: looked in {profiles} and {folders}"))
+}
+
+fn forget(output: &mut Output, id: &str, files: Vec<PathBuf>, erase: bool) -> Result<(), Failure> {
     for path in files.iter().filter(|_| erase) {
         fs::remove_file(path).map_err(|error| named(path, error))?;
     }
@@ -244,12 +267,12 @@ fn forget(output: &mut Output, places: &Places, id: &str, trials: &[PathBuf], er
 
 /// The journals in a folder that are a person's: by what their header says, whatever they are called now; and all files,
 /// as exports and damaged journals, that bear the pseudonym at the beginning of their name.
-fn trials_of(id: &str, folder: &Path) -> Vec<PathBuf> {
+fn trials_of(id: &str, folder: &Path, key: Option<&Key>) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let mut files: Vec<PathBuf> = entries
         .flatten()
         .map(|entry| entry.path())
-        .filter(|path| path.is_file() && (is_named_after(id, path) || is_journal_of(id, path)))
+        .filter(|path| path.is_file() && (is_named_after(id, path) || is_journal_of(id, path, key)))
         .collect();
     files.sort();
     files
@@ -260,9 +283,10 @@ fn is_named_after(id: &str, path: &Path) -> bool {
     name.strip_prefix(id).is_some_and(|rest| rest.starts_with("-seed"))
 }
 
-fn is_journal_of(id: &str, path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension == "mcap")
-        && read_header(path).is_ok_and(|header| header.profile == id)
+fn is_journal_of(id: &str, path: &Path, key: Option<&Key>) -> bool {
+    let plain = path.extension().filter(|extension| *extension == "age").map(|_| path.with_extension(""));
+    is_journal(plain.as_deref().unwrap_or(path))
+        && read_header(JournalFile::new(path, key.cloned())).is_ok_and(|header| header.profile == id)
 }
 
 #[cfg(test)]
@@ -291,16 +315,30 @@ mod tests {
             profiles: vec![profiles.clone()],
             trials: trials.clone(),
             demos: folder.path().join("demos"),
+            logs: folder.path().join("logs"),
         };
         let mut output = Output::new(true);
         let folders = [trials];
-        forget(&mut output, &places, "p-01", &folders, false).unwrap();
+        let kept = |key: Option<&Key>| files_of("p-01", &places, &folders, key);
+        forget(&mut output, "p-01", kept(None), false).unwrap();
         assert!(mine.exists() && renamed.exists() && profiles.join("p-01.toml").exists());
-        forget(&mut output, &places, "p-01", &folders, true).unwrap();
+        forget(&mut output, "p-01", kept(None), true).unwrap();
         assert!(!mine.exists() && !renamed.exists() && !profiles.join("p-01.toml").exists());
         assert!(other.exists());
-        let words = forget(&mut output, &places, "p-01", &folders, true).unwrap_err().to_string();
+        assert!(kept(None).is_empty());
+        let words = nothing_kept("p-01", &places, &folders).to_string();
         assert!(words.contains("nothing is kept under p-01"), "{words}");
+    }
+
+    #[test]
+    fn an_encrypted_journal_is_found_with_its_key_whatever_it_is_called() {
+        let folder = tempfile::tempdir().unwrap();
+        let key = Key::Passphrase("correct horse battery".to_owned().into());
+        let closed = close_journal(&journal(folder.path(), "p-01"), &key).unwrap();
+        let renamed = folder.path().join("monday.mcap.age");
+        fs::rename(closed, &renamed).unwrap();
+        assert!(trials_of("p-01", folder.path(), None).is_empty());
+        assert_eq!(trials_of("p-01", folder.path(), Some(&key)), [renamed]);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Whether and where trials are recorded: by default always, into the folder of this user; loudly said where not.
 
 use super::exit::Failure;
-use crate::config::{LoadedProfile, RecordingSettings};
-use crate::record::{Header, JournalError, JournalWriter, Recorder, Told};
+use crate::config::{Key, LoadedProfile, RecordingSettings};
+use crate::record::{Header, JournalError, JournalWriter, Recorder, Told, close_journal};
 use crate::supervisor::Setup;
 use std::fs;
 use std::io::Write;
@@ -121,6 +121,17 @@ impl Recording {
             let _ = fs::remove_file(path);
         }
     }
+}
+
+/// Closes the finished journal of a person whose profile is encrypted with the key that opened it; any other stays as it is.
+/// Returns where the journal is now.
+///
+/// # Errors
+/// Where the closed file cannot be written: the plain one is kept then, and is named.
+pub(super) fn sealed(journal: PathBuf, person: &LoadedProfile, key: Option<&Key>) -> Result<PathBuf, Failure> {
+    let Some(key) = key.filter(|_| person.is_encrypted) else { return Ok(journal) };
+    let plain = |error: JournalError| Failure::Fault(format!("{error}. {} is left unencrypted", journal.display()));
+    close_journal(&journal, key).map_err(plain)
 }
 
 /// The profile's text as journals keep it: none where the profile is encrypted at rest, its hash alone tells it then.

@@ -3,10 +3,11 @@
 mod screen;
 
 use super::exit::Failure;
+use super::key::KeyArguments;
 use super::output::Output;
 use crate::config::{Places, Settings, layered};
 use crate::headless::Report;
-use crate::record::{Difference, Player, Reading, Replay};
+use crate::record::{Difference, JournalFile, Player, Reading, Replay};
 use crate::supervisor::{Effect, Setup, SupervisorSettings};
 use serde::Serialize;
 use std::io::IsTerminal;
@@ -34,6 +35,8 @@ pub(super) struct Arguments {
     /// Change a setting and show what would have been decided, as in `strategy=multimodal` or `window.threshold_newtons=4`.
     #[arg(long, value_name = "KEY=VALUE")]
     what_if: Vec<String>,
+    #[command(flatten)]
+    key: KeyArguments,
 }
 
 /// Differences that are shown to people; the rest is counted.
@@ -80,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let began = Instant::now();
     let mut tally = Tally::default();
     let change = |setup: Setup| changed(setup, &arguments.trial, &layer);
-    let reading = Replay::run(&arguments.trial, change, |replay, now, _, effects, difference| {
+    let reading = Replay::run(arguments.journal()?, change, |replay, now, _, effects, difference| {
         tally.first_gap = replay.first_gap();
         tally.decisions += effects.len() as u64;
         let printed = print_step(arguments, &mut output, &mut tally.differences, now.seconds(), effects, difference);
@@ -108,6 +111,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
+    fn journal(&self) -> Result<JournalFile, Failure> {
+        Ok(JournalFile::new(&self.trial, self.key.given()?))
+    }
+
     fn is_for_a_screen(&self) -> bool {
         let terminal = std::io::stdin().is_terminal() && std::io::stdout().is_terminal();
         terminal && !self.check && !self.json && !self.headless
@@ -118,7 +125,7 @@ fn show(arguments: &Arguments, layer: Table) -> Result<(), Failure> {
     let settings = Settings::find(None, &Places::of_this_machine()).map_err(Failure::configuration)?;
     let trial = arguments.trial.clone();
     let change = Box::new(move |setup| changed(setup, &trial, &layer));
-    let player = Player::open(&arguments.trial, change).map_err(Failure::configuration)?;
+    let player = Player::open(arguments.journal()?, change).map_err(Failure::configuration)?;
     screen::show(player, settings.console())
 }
 

@@ -3,6 +3,7 @@
 //! Only glue: each part knows none of the others.
 
 use super::exit::Failure;
+use super::log::{self, ProgramLog};
 use super::planning::PlannerThread;
 use super::recording::Recording;
 use super::sim::ros_failure;
@@ -19,6 +20,7 @@ use crate::ros::{Commander, DepthWatcher, LinkSettings, Node, RobotLink, RosLimb
 use crate::snapshot::{Choices, Freshness, RecorderView, Shared, Snapshot, TopicHealth};
 use crate::supervisor::{Effect, Input, LinkEvent, PlanOrder, PlannerKind, Setup, Supervisor};
 use crate::time::Stamp;
+use std::path::PathBuf;
 use std::sync::{Arc, OnceLock, Weak};
 use std::time::{Duration, Instant};
 
@@ -45,6 +47,7 @@ pub(super) struct Session {
     shell: ShellView,
     recorder: Option<Arc<Recorder>>,
     node: Node,
+    log: ProgramLog,
 }
 
 /// Carries effects to the robot through guards, shows snapshots to other nodes, records every step.
@@ -113,6 +116,7 @@ impl Outlet for RobotOutlet {
     }
 
     fn record(&mut self, now: Stamp, input: &Input, effects: &[Effect]) {
+        effects.iter().for_each(log::tell);
         if let (Input::Joints(sample), Some(limbs)) = (input, self.limbs.as_mut()) {
             for (side, positions) in sample.positions.iter() {
                 limbs.observe(now, side, positions);
@@ -133,6 +137,7 @@ impl Session {
     /// # Errors
     /// Where the master does not register something, a setting is not usable, or the recorder cannot write.
     pub(super) fn open(opening: Opening<'_>) -> Result<Self, Failure> {
+        let log = ProgramLog::start(&Places::of_this_machine().logs);
         let model = RobotModel::baxter().map_err(Failure::configuration)?;
         let limits = opening.setup.settings.motion.clone();
         let inbox: Arc<OnceLock<Inbox>> = Arc::default();
@@ -191,7 +196,7 @@ impl Session {
         // Nobody else sets it: this cannot fail.
         let _ = inbox.set(engine.inbox());
         engine.inbox().offer(Input::Link(LinkEvent::MasterBack));
-        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, node })
+        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, node, log })
     }
 
     /// The stop, for keys and panics: sets the latch, never blocks.
@@ -258,18 +263,19 @@ impl Session {
     }
 
     /// Ends the session in order: the arms are no longer commanded, the record is closed, the graph is left.
-    pub(super) fn close(mut self) -> Option<String> {
+    pub(super) fn close(mut self) -> Option<PathBuf> {
         drop(self.engine.take());
         drop(self.stop.take());
-        let Self { shell: ShellView { link, recorder: shared, .. }, recorder, node, .. } = self;
+        let Self { shell: ShellView { link, recorder: shared, .. }, recorder, node, log, .. } = self;
         // The recorder is finished by its last owner.
         drop(shared);
         let path = recorder.map(|recorder| {
-            let path = recorder.status().path.display().to_string();
+            let path = recorder.status().path;
             drop(Arc::into_inner(recorder));
             path
         });
         leave((link, node));
+        drop(log);
         path
     }
 }

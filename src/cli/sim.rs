@@ -107,6 +107,12 @@ pub(super) struct Arguments {
     /// Something that goes wrong; may be repeated. As in `kind = "lost_pose", from_seconds = 20, duration_seconds = 5`.
     #[arg(long, value_name = "FAULT", value_parser = fault)]
     pub(super) fault: Vec<Fault>,
+    /// The garment, by its name in the profile; the first one there where none is named.
+    #[arg(long, value_name = "NAME")]
+    pub(super) garment_name: Option<String>,
+    /// End when the standard input does: whoever started this simulator is gone then.
+    #[arg(long, hide = true)]
+    pub(super) until_input_ends: bool,
     /// Instead of a robot: write depth images of simulated people with their truth into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) images: Option<PathBuf>,
@@ -204,14 +210,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // What was typed is checked first: a wrong name needs no master to be found.
     simulated_person(arguments.profile.as_deref())?;
     let ended = ending_signals()?;
+    if arguments.until_input_ends {
+        end_with_the_input(Arc::clone(&ended));
+    }
     let node = Node::start("simulated_baxter").map_err(ros_failure)?;
     let profile = arguments.profile.clone().or_else(|| node.text_parameter("~profile"));
     let seed = arguments.seed.or_else(|| node.seed_parameter("~seed")).unwrap_or(DEFAULT_SEED);
     let person = simulated_person(profile.as_deref())?;
+    if let Some(name) = arguments.garment_name.as_deref().filter(|name| person.garment(Some(name)).is_none()) {
+        return Err(Failure::Configuration(format!("--garment-name {name} is no garment of this profile")));
+    }
     let setup = WorldSetup {
         seed,
         person: person.simulated.clone().unwrap_or_default(),
-        garment: person.garment(None).cloned().unwrap_or_default(),
+        garment: person.garment(arguments.garment_name.as_deref()).cloned().unwrap_or_default(),
         backend: arguments.garment.into(),
         arms_hide_joints: arguments.skeleton == SkeletonTracker::Occluded,
         faults: FaultPlan { faults: arguments.fault.clone() },
@@ -261,6 +273,16 @@ pub(super) fn ending_signals() -> Result<Arc<AtomicBool>, Failure> {
         signal_hook::flag::register(signal, Arc::clone(&ended)).map_err(Failure::fault)?;
     }
     Ok(ended)
+}
+
+/// Raises the flag when the standard input ends: a process that was killed cannot say that it is gone, but its end of the
+/// pipe closes.
+fn end_with_the_input(ended: Arc<AtomicBool>) {
+    std::thread::spawn(move || {
+        // An input that cannot be read has ended, too.
+        let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
+        ended.store(true, Ordering::SeqCst);
+    });
 }
 
 /// The exit code that fits what went wrong with ROS.

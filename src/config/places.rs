@@ -15,12 +15,15 @@ pub struct Places {
     pub trials: PathBuf,
     /// Where simulated trials are recorded unless a folder is given.
     pub demos: PathBuf,
+    /// Where the program writes its own log.
+    pub logs: PathBuf,
 }
 
 impl Places {
     /// The places of this machine and user: `$XDG_CONFIG_HOME/valet/config.toml`, then `/etc/valet/config.toml`; profiles
     /// in `profiles/` here, `$XDG_DATA_HOME/valet/profiles`, `/usr/share/valet/profiles`; trials in
-    /// `$XDG_DATA_HOME/valet/trials`, simulated ones in `$XDG_DATA_HOME/valet/demos`.
+    /// `$XDG_DATA_HOME/valet/trials`, simulated ones in `$XDG_DATA_HOME/valet/demos`; the program's log in
+    /// `$XDG_STATE_HOME/valet/logs`.
     #[must_use]
     pub fn of_this_machine() -> Self {
         let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
@@ -34,6 +37,7 @@ impl Places {
             profiles: vec!["profiles".into(), data.join("profiles"), "/usr/share/valet/profiles".into()],
             trials: data.join("trials"),
             demos: data.join("demos"),
+            logs: folder("XDG_STATE_HOME", ".local/state").join("logs"),
         }
     }
 

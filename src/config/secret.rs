@@ -4,6 +4,7 @@
 
 use age::secrecy::SecretString;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use thiserror::Error;
@@ -91,6 +92,26 @@ impl Key {
     }
 }
 
+impl Key {
+    /// Decrypts what is intact of a long file: its beginning, and why the rest cannot be opened, where it was cut or
+    /// damaged. Each piece that comes out is one that was put in: age seals them one by one.
+    ///
+    /// # Errors
+    /// [`SecretError::WrongKey`] where the key does not fit or the beginning itself is damaged.
+    pub fn decrypt_what_is_intact(&self, path: &Path, secret: &[u8]) -> Result<(Vec<u8>, Option<String>), SecretError> {
+        let identity: Box<dyn age::Identity> = match self {
+            Self::File(file) => Box::new(identity_in(file)?),
+            Self::Passphrase(phrase) => Box::new(age::scrypt::Identity::new(phrase.clone())),
+        };
+        let refused = |error: age::DecryptError| SecretError::WrongKey { path: path.into(), reason: error.to_string() };
+        let decryptor = age::Decryptor::new_buffered(secret).map_err(refused)?;
+        let mut reader = decryptor.decrypt(std::iter::once(identity.as_ref())).map_err(refused)?;
+        let mut plain = Vec::new();
+        let damage = reader.read_to_end(&mut plain).err().map(|error| error.to_string());
+        Ok((plain, damage))
+    }
+}
+
 /// Reads a file that may be encrypted.
 ///
 /// # Errors
@@ -140,6 +161,18 @@ mod tests {
         for length in [0, 10, secret.len() / 2, secret.len() - 1] {
             assert!(key.decrypt(Path::new("x"), &secret[..length]).is_err(), "{length}");
         }
+    }
+
+    #[test]
+    fn the_beginning_of_a_cut_secret_is_read_and_a_wrong_key_reads_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let (right, wrong) = (key_file(folder.path(), "a"), key_file(folder.path(), "b"));
+        let plain: Vec<u8> = (0_u32..300_000).map(|number| u8::try_from(number % 251).unwrap()).collect();
+        let secret = right.encrypt(Path::new("x"), &plain).unwrap();
+        assert_eq!(right.decrypt_what_is_intact(Path::new("x"), &secret).unwrap(), (plain.clone(), None));
+        let (read, damage) = right.decrypt_what_is_intact(Path::new("x"), &secret[..secret.len() / 2]).unwrap();
+        assert!(read.len() > 60_000 && plain.starts_with(&read) && damage.is_some(), "{}: {damage:?}", read.len());
+        assert!(wrong.decrypt_what_is_intact(Path::new("x"), &secret).is_err());
     }
 
     #[test]

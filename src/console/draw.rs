@@ -154,7 +154,8 @@ fn state_line<'a>(scene: &Scene<'a>, width: u16) -> Line<'a> {
     let recorder = recorder_words(&live.recorder);
     fact(recorder.0.into(), recorder.1);
     let (worst, symbol, role) = worst_topic(scene);
-    fact(format!("{symbol} data {worst}"), role);
+    let silent = if narrow { String::new() } else { age_of_what_is_stale(scene) };
+    fact(format!("{symbol} data {worst}{silent}"), role);
     if live.dropped_samples > 0 {
         fact(format!("{} dropped", live.dropped_samples), Role::Late);
     }
@@ -184,6 +185,14 @@ fn worst_topic(scene: &Scene<'_>) -> (&'static str, char, Role) {
     let worst = topics.chain([master]).max().unwrap_or_default();
     let (symbol, role) = scene.look.verdict(worst);
     (verdict_word(worst), symbol, role)
+}
+
+/// For how long a topic that the trial needs has been silent, the longest of them, where one is stale.
+fn age_of_what_is_stale(scene: &Scene<'_>) -> String {
+    let live = scene.live;
+    let stale = live.topics.iter().filter(|topic| topic.required && topic.verdict(live.now) >= Verdict::Stale);
+    let oldest = stale.filter_map(|topic| topic.freshness.age(live.now)).reduce(f64::max);
+    oldest.map_or_else(String::new, |age| format!(" {}", super::widgets::text::seconds(age)))
 }
 
 /// A verdict as a word.

@@ -177,7 +177,7 @@ fn a_stale_value_is_never_shown_as_a_number() {
     }
     let view = ViewState { screen: Screen::Force, ..ViewState::default() };
     let text = text_of(&drawn(&stale, &view, COLOUR, (120, 40)));
-    assert_eq!(text.matches(" STALE ").count(), 2 + 16 + 1, "headings, strips and the robot\n{text}");
+    assert_eq!(text.matches(" STALE ").count(), 2 + 16 + 2, "headings, strips, the robot and the data\n{text}");
 }
 
 #[test]
@@ -297,4 +297,14 @@ fn after_the_reset_of_a_latched_stop_enable_and_then_start_are_offered() {
     reset.robot.state.as_mut().unwrap().enabled = true;
     assert_eq!(press(&mut app, &reset, &["p", "y", "enter"]), [], "a hold is not left before Start");
     assert_eq!(press(&mut app, &reset, &["S", "y", "enter"]), [Reaction::Send(Command::Start)]);
+}
+
+#[test]
+fn the_banner_says_what_became_of_a_stop_at_every_width() {
+    let stopped = fixture(Situation::Stopped);
+    for width in [40, 60, 80, 100, 120] {
+        let text = text_of(&drawn(&stopped, &ViewState::default(), COLOUR, (width, 24)));
+        assert!(text.contains("confirmed by the robot after"), "{width}\n{text}");
+        assert!(text.contains("red button: "), "{width}\n{text}");
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::channels::CHANNELS;
 use super::error::JournalError;
+use super::file::JournalFile;
 use super::ros_message::{self, RosMessage};
 use super::{Reading, Step, read};
 use crate::supervisor::{Effect, Input};
@@ -23,7 +24,7 @@ const FIRST_MOMENT: Stamp = Stamp::from_nanoseconds(1_000_000_000);
 ///
 /// # Errors
 /// [`JournalError`] where the journal cannot be read or the bag cannot be written.
-pub fn write_bag(journal: &Path, bag: &Path, anonymous: bool) -> Result<Reading, JournalError> {
+pub fn write_bag(journal: impl Into<JournalFile>, bag: &Path, anonymous: bool) -> Result<Reading, JournalError> {
     let failed = |source| JournalError::file(bag, source);
     let mut writer = Bag::create(bag).map_err(failed)?;
     let mut first = None;

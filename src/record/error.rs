@@ -1,5 +1,6 @@
 //! What can be wrong with a journal: file, offset, and what can still be read.
 
+use crate::config::SecretError;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -42,6 +43,15 @@ pub enum JournalError {
         /// The newest format that is known.
         known: u32,
     },
+    /// The journal is encrypted and no key was given.
+    #[error("{path} is encrypted: give the person's key with --key FILE or --passphrase-file FILE")]
+    Locked {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The key does not fit, or cannot be used.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
 }
 
 impl JournalError {

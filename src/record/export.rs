@@ -1,6 +1,7 @@
 //! Exports a journal as tables (CSV), one file a kind, time in seconds from the first step.
 
 use super::error::JournalError;
+use super::file::JournalFile;
 use super::{Reading, Step, read};
 use crate::command::Command;
 use crate::supervisor::{Effect, Input};
@@ -25,7 +26,7 @@ pub struct CsvFiles {
 ///
 /// # Errors
 /// [`JournalError`] where the journal cannot be read or a file cannot be written.
-pub fn write_csv(journal: &Path, folder: &Path, anonymous: bool) -> Result<Reading, JournalError> {
+pub fn write_csv(journal: impl Into<JournalFile>, folder: &Path, anonymous: bool) -> Result<Reading, JournalError> {
     let mut files = CsvFiles::create(folder)?;
     let mut first = None;
     let mut outcome = Ok(());
@@ -59,7 +60,7 @@ impl CsvFiles {
             let path = folder.join(name);
             let mut writer = csv::Writer::from_path(&path).map_err(|error| JournalError::container(&path, error))?;
             writer.write_record(head).map_err(|error| JournalError::container(&path, error))?;
-            Ok(writer)
+            Ok::<_, JournalError>(writer)
         };
         let wrench = [
             "time_seconds",

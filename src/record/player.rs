@@ -4,6 +4,7 @@
 
 use super::entry::{Header, Step};
 use super::error::JournalError;
+use super::file::JournalFile;
 use super::replay::{Difference, Replay};
 use super::{Reading, read};
 use crate::snapshot::{Level, LogLine, RecorderView, ReplayView, Snapshot};
@@ -54,9 +55,11 @@ impl Player {
     ///
     /// # Errors
     /// [`JournalError`] where the journal cannot be read, holds no step, or its settings are not usable.
-    pub fn open(path: &Path, change: Change) -> Result<Self, JournalError> {
+    pub fn open(journal: impl Into<JournalFile>, change: Change) -> Result<Self, JournalError> {
+        let journal = journal.into();
+        let path = journal.path();
         let mut steps = Vec::new();
-        let reading = read(path, |_, step| steps.push(step))?;
+        let reading = read(&journal, |_, step| steps.push(step))?;
         if steps.is_empty() {
             return Err(JournalError::foreign(path, "it holds no step that can be read"));
         }

@@ -4,11 +4,12 @@ use super::channels::{EFFECT, INPUT};
 use super::chunk;
 use super::entry::{Header, OwnedEffectEntry, OwnedInputEntry, Step};
 use super::error::{JournalError, Problem};
+use super::file::{Contents, JournalFile};
 use super::writer::{FORMAT, METADATA};
 use mcap::records::{Metadata, Record};
 use std::collections::HashMap;
-use std::fs::{self, File};
-use std::io::{BufReader, Read};
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read};
 use std::path::Path;
 
 /// What was read of a journal.
@@ -42,8 +43,10 @@ const CHUNK: u8 = 0x06;
 /// # Errors
 /// [`JournalError`] where nothing can be read: no file, no journal of valet, or a later format. Damage inside is no error:
 /// it is listed in [`Reading::problems`].
-pub fn read(path: &Path, mut visit: impl FnMut(&Header, Step)) -> Result<Reading, JournalError> {
-    let bytes = fs::read(path).map_err(|source| JournalError::file(path, source))?;
+pub fn read(journal: impl Into<JournalFile>, mut visit: impl FnMut(&Header, Step)) -> Result<Reading, JournalError> {
+    let journal = journal.into();
+    let path = journal.path();
+    let Contents { bytes, damage } = journal.contents()?;
     if !bytes.starts_with(MAGIC) {
         return Err(JournalError::foreign(path, kind_of(&bytes)));
     }
@@ -76,6 +79,9 @@ pub fn read(path: &Path, mut visit: impl FnMut(&Header, Step)) -> Result<Reading
             break;
         }
     }
+    if let Some(reason) = damage {
+        scan.problem(bytes.len() as u64, format!("the encrypted file is cut or damaged after this: {reason}"));
+    }
     scan.finish(path, &mut visit)
 }
 
@@ -83,9 +89,18 @@ pub fn read(path: &Path, mut visit: impl FnMut(&Header, Step)) -> Result<Reading
 ///
 /// # Errors
 /// [`JournalError`] where it is no journal of valet, or has a later format.
-pub fn read_header(path: &Path) -> Result<Header, JournalError> {
+pub fn read_header(journal: impl Into<JournalFile>) -> Result<Header, JournalError> {
+    let journal = journal.into();
+    let path = journal.path();
+    if journal.is_closed()? {
+        return header_in(path, Cursor::new(journal.contents()?.bytes));
+    }
+    let file = File::open(path).map_err(|source| JournalError::file(path, source))?;
+    header_in(path, BufReader::new(file))
+}
+
+fn header_in(path: &Path, mut file: impl Read) -> Result<Header, JournalError> {
     let failed = |source| JournalError::file(path, source);
-    let mut file = BufReader::new(File::open(path).map_err(failed)?);
     let mut begin = [0; MAGIC.len()];
     let whole = file.read_exact(&mut begin);
     if whole.is_err() || begin != *MAGIC {

@@ -2,13 +2,13 @@
 
 use super::entry::{Header, Recipe, Step};
 use super::error::JournalError;
+use super::file::JournalFile;
 use super::{Reading, read};
 use crate::kinematics::RobotModel;
 use crate::modelling::MovementSpace;
 use crate::supervisor::{Effect, Setup, Supervisor, WarmStart};
 use crate::time::Stamp;
 use serde::Serialize;
-use std::path::Path;
 
 /// A step at which the core now decides otherwise than it was recorded.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -85,13 +85,14 @@ impl Replay {
     /// # Errors
     /// [`JournalError`] where the journal cannot be read or its settings are not usable.
     pub fn run(
-        path: &Path,
+        journal: impl Into<JournalFile>,
         change: impl Fn(Setup) -> Result<Setup, String>,
         mut visit: impl FnMut(&Self, Stamp, &Step, &[Effect], Option<&Difference>),
     ) -> Result<Reading, JournalError> {
+        let journal = journal.into();
         let mut replay = None;
         let mut refused = None;
-        let reading = read(path, |header, step| {
+        let reading = read(&journal, |header, step| {
             if replay.is_none() && refused.is_none() {
                 match Self::new(header, &change) {
                     Ok(made) => replay = Some(made),
@@ -105,7 +106,9 @@ impl Replay {
         })?;
         match refused {
             None => Ok(reading),
-            Some(reason) => Err(JournalError::foreign(path, format!("its settings are not usable: {reason}"))),
+            Some(reason) => {
+                Err(JournalError::foreign(journal.path(), format!("its settings are not usable: {reason}")))
+            }
         }
     }
 }
@@ -121,10 +124,11 @@ fn in_words(effects: &[Effect]) -> String {
 ///
 /// # Errors
 /// [`JournalError`] where the journal cannot be read at all.
-pub fn learned_in(path: &Path) -> Result<Vec<WarmStart>, JournalError> {
-    let trial = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+pub fn learned_in(journal: impl Into<JournalFile>) -> Result<Vec<WarmStart>, JournalError> {
+    let journal = journal.into();
+    let trial = journal.name();
     let mut learned = Vec::new();
-    read(path, |_, step| {
+    read(&journal, |_, step| {
         learned.extend(step.effects.into_iter().filter_map(|effect| match effect {
             Effect::Learned(found) => Some(WarmStart { trial: trial.clone(), ..found }),
             _ => None,

@@ -81,8 +81,13 @@ impl Page {
     /// [`PlotError`] where the figure cannot be drawn.
     pub fn figure(&mut self, figure: &Figure, caption: &str) -> Result<&mut Self, PlotError> {
         let drawing = figure.svg()?;
+        Ok(self.drawing(&drawing, caption))
+    }
+
+    /// Adds a figure that is drawn already, as the SVG document of [`Figure::svg`], with its caption.
+    pub fn drawing(&mut self, drawing: &str, caption: &str) -> &mut Self {
         let caption = escape(caption);
-        Ok(self.append(&format!("<figure>\n{drawing}\n<figcaption>{caption}</figcaption></figure>\n")))
+        self.append(&format!("<figure>\n{drawing}\n<figcaption>{caption}</figcaption></figure>\n"))
     }
 
     /// The finished page.

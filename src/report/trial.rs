@@ -3,10 +3,12 @@
 //! Every number comes from the journal or from the core that replays it; what the journal does not hold is said to be
 //! missing, never filled in.
 
+mod answers;
 mod compare;
 mod figures;
 mod page;
 
+pub use answers::{Answers, AnswersError};
 pub use compare::compare;
 pub use page::write;
 
@@ -14,12 +16,12 @@ use crate::body::{Joint, PerSide, Side};
 use crate::command::Command;
 use crate::geometry::Point;
 use crate::modelling::MovementSpace;
-use crate::record::{Header, JournalError, Reading, Replay, Step};
+use crate::record::{Header, JournalError, JournalFile, Reading, Replay, Step};
 use crate::snapshot::{Detection, EllipseView, ForceSample, Level, Outcome};
 use crate::strategy::{IterationSummary, StrategyKind, WaypointChange};
 use crate::supervisor::{Effect, EndpointSample, Input};
 use crate::time::Stamp;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// One pass along an arm.
 #[derive(Clone, Debug)]
@@ -84,6 +86,8 @@ pub struct TrialRecord {
     pub compliance: Vec<(Side, Joint, Compliance)>,
     /// Steps that the core now decides otherwise.
     pub differences: u64,
+    /// The short questionnaires, as far as they were answered.
+    pub answers: Answers,
 }
 
 /// The 95 % quantile of the chi-squared distribution with three degrees of freedom.
@@ -96,13 +100,14 @@ impl TrialRecord {
     ///
     /// # Errors
     /// [`JournalError`] where the journal cannot be read at all.
-    pub fn gather(path: &Path) -> Result<Self, JournalError> {
+    pub fn gather(journal: impl Into<JournalFile>) -> Result<Self, JournalError> {
+        let journal = journal.into();
         let mut gathering = Gathering::default();
-        let reading = Replay::run(path, Ok, |replay, now, step, effects, difference| {
+        let reading = Replay::run(&journal, Ok, |replay, now, step, effects, difference| {
             gathering.differences += u64::from(difference.is_some());
             gathering.step(replay, now, step, effects);
         })?;
-        Ok(gathering.finish(path, reading))
+        Ok(gathering.finish(&journal, reading))
     }
 
     /// The strategy of the first pass, or `None` where there was none.
@@ -220,15 +225,15 @@ impl Gathering {
         }
     }
 
-    fn finish(self, path: &Path, reading: Reading) -> TrialRecord {
+    fn finish(self, journal: &JournalFile, reading: Reading) -> TrialRecord {
         let began = self.began.unwrap_or_default();
         let counted = Side::BOTH.into_iter().flat_map(|side| {
             let counts = *self.compliance.get(side);
             Joint::DRESSED.into_iter().zip(counts).map(move |(joint, count)| (side, joint, count))
         });
         TrialRecord {
-            path: path.to_path_buf(),
-            name: path.file_stem().map_or_else(|| "trial".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+            path: journal.path().to_path_buf(),
+            name: journal.name(),
             header: reading.header.clone(),
             reading,
             began,
@@ -243,6 +248,7 @@ impl Gathering {
             end: self.end,
             compliance: counted.filter(|(_, _, count)| count.poses > 0).collect(),
             differences: self.differences,
+            answers: Answers::default(),
         }
     }
 }

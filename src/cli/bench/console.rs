@@ -26,6 +26,11 @@ const LOOK: Duration = Duration::from_millis(20);
 /// The rings of the screen hold a minute: memory is judged after it.
 const WARM_UP: Duration = Duration::from_secs(75);
 
+/// The key and the word that clear a stop.
+const RESET: &[u8] = b"Rreset\r";
+/// How long a reset may take before it is asked for again.
+const ASK_AGAIN: Duration = Duration::from_secs(2);
+
 /// The console: frames, stop latency, processor time, bytes to the terminal, memory.
 #[derive(Debug, Clone, clap::Args)]
 pub(in crate::cli) struct Arguments {
@@ -217,7 +222,15 @@ fn one_stop(
     let is_clear = |seen: &Snapshot| {
         seen.robot.state.is_some_and(|robot| !robot.stopped) && (!seen.stop.latched || seen.stop.is_reset)
     };
-    wait_until("the robot without a stop", || state(&is_clear))?;
+    let mut asked = Instant::now();
+    wait_until("the robot without a stop", || {
+        if asked.elapsed() > ASK_AGAIN {
+            // The screen had not seen the stop yet when it was asked to reset, and refused: the keys are typed again.
+            asked = Instant::now();
+            let _ = terminal.press(RESET);
+        }
+        state(&is_clear)
+    })?;
     // At every phase of the beat and of the frames.
     thread::sleep(Duration::from_millis(index as u64 * 7 % 40));
     ear.forget();
@@ -229,7 +242,7 @@ fn one_stop(
     })?;
     // The console is told by the same snapshots, a frame later.
     thread::sleep(Duration::from_millis(200));
-    terminal.press(b"Rreset\r")?;
+    terminal.press(RESET)?;
     Ok(heard.saturating_duration_since(typed))
 }
 

@@ -5,16 +5,17 @@ use crate::cli::anew::{self, Chosen};
 use crate::cli::console::{choose_strategy, conclude, show};
 use crate::cli::exit::Failure;
 use crate::cli::output::Output;
-use crate::cli::recording::warn;
+use crate::cli::recording::{sealed, warn};
 use crate::cli::session::{Opening, Session};
 use crate::cli::sim::ros_failure;
 use crate::command::Origin;
-use crate::config::Places;
+use crate::config::{LoadedProfile, Places};
 use crate::console::ExitReason;
 use crate::headless::{Report, ScriptedOperator, TrialResult};
 use crate::ros::{Node, environment, node};
 use crate::snapshot::Outcome;
 use std::os::unix::process::CommandExt;
+use std::path::PathBuf;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
@@ -61,10 +62,13 @@ fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failur
     let typed = typed.chain([port.to_string(), "--seed".into(), arguments.seed.to_string()]);
     let typed = typed.chain(["--garment".to_owned(), arguments.garment.name().to_owned()]);
     let profile = arguments.profile.iter().flat_map(|name| ["--profile".to_owned(), name.clone()]);
-    let mut command = environment::this_program(typed.chain(profile), port).map_err(Failure::fault)?;
-    // The screen belongs to the console alone.
+    let name = arguments.garment_name.iter().flat_map(|name| ["--garment-name".to_owned(), name.clone()]);
+    let typed = typed.chain(profile).chain(name).chain(["--until-input-ends".to_owned()]);
+    let mut command = environment::this_program(typed, port).map_err(Failure::fault)?;
+    // The screen belongs to the console alone. The input is never written to: it ends with this process, however that
+    // ends, and the simulator with it.
     let child =
-        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().map_err(Failure::fault)?;
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().map_err(Failure::fault)?;
     let mut simulator = Simulator(child);
     let began = Instant::now();
     while node::probe_master(&node::master_uri()).is_err() {
@@ -90,19 +94,25 @@ fn supervise(arguments: &Arguments, simulator: Simulator) -> Result<(), Failure>
     let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: false })?;
     if arguments.headless {
         let result = follow(arguments, &session, strategy.name());
-        if let Some(path) = session.close() {
-            warn(&format!("recorded in {path}"));
+        if let Some(path) = recorded_in(session, &person, arguments)? {
+            warn(&format!("recorded in {}", path.display()));
         }
         return verdict(&result?);
     }
     let (options, chosen) = (arguments.screen.over(settings.console()), Chosen::default());
     let reason = show(&session, &options, &mut arguments.screen.reader(None), &chosen);
-    let recorded = session.close();
+    let recorded = recorded_in(session, &person, arguments)?;
     if matches!(reason, Ok(ExitReason::BeginAnew)) {
         drop(simulator);
         return anew::begin(&chosen);
     }
     conclude(reason, recorded.as_deref())
+}
+
+/// Closes the session and says where its journal is now.
+fn recorded_in(session: Session, person: &LoadedProfile, arguments: &Arguments) -> Result<Option<PathBuf>, Failure> {
+    let key = arguments.key.given()?;
+    session.close().map(|path| sealed(path, person, key.as_ref())).transpose()
 }
 
 /// The scripted operator on the real node: prints what happens until the trial has ended.

@@ -15,7 +15,13 @@ fn complaint(text: &str) -> String {
 }
 
 fn places(folder: &Path) -> Places {
-    Places { settings: vec![], profiles: vec![folder.into()], trials: folder.into(), demos: folder.into() }
+    Places {
+        settings: vec![],
+        profiles: vec![folder.into()],
+        trials: folder.into(),
+        demos: folder.into(),
+        logs: folder.into(),
+    }
 }
 
 #[test]

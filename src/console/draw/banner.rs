@@ -120,16 +120,7 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
         put(buffer, area, 0, &line(scene.look, state.role, text));
         return 1;
     }
-    let stop = &scene.live.stop;
-    let asked = stop.requested_at.map_or_else(String::new, |at| format!(" requested {} ·", clock(at)));
-    let sent = stop.sent_at.zip(stop.requested_at).map(|(sent, asked)| seconds(sent.since(asked).as_secs_f64()));
-    let sent = sent.map_or_else(String::new, |sent| format!(" · sent after {sent}"));
-    let cause = if stop.cause.is_empty() { "not known" } else { stop.cause.as_str() };
-    let rows = [
-        format!("{}: EMERGENCY STOP (software){asked} {}", state.word, state.headline),
-        format!(" cause: {cause}{sent} · red button: {red}"),
-        " No software on a PC is safety-rated: the red button is. Reset, Enable and Start are three acts.".into(),
-    ];
+    let rows = stop_rows(scene, &state, area.width, red);
     let mut taken = 0;
     for text in rows {
         let width = usize::from(area.width);
@@ -137,4 +128,34 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
         taken += 1;
     }
     taken
+}
+
+/// What a stop says, the most important first, in as many words as the terminal has room for.
+fn stop_rows(scene: &Scene<'_>, state: &StopState, width: u16, red: &str) -> [String; 3] {
+    let stop = &scene.live.stop;
+    let asked = stop.requested_at.map_or_else(String::new, |at| format!(" · requested {}", clock(at)));
+    let sent = stop.sent_at.zip(stop.requested_at).map(|(sent, asked)| seconds(sent.since(asked).as_secs_f64()));
+    let sent = sent.map_or_else(String::new, |sent| format!(" · sent after {sent}"));
+    let cause = if stop.cause.is_empty() { "not known" } else { stop.cause.as_str() };
+    let (word, headline) = (&state.word, &state.headline);
+    if width < 70 {
+        return [
+            format!("{word} {headline}"),
+            format!(" red button: {red} · cause: {cause}"),
+            " By software: not safety-rated.".into(),
+        ];
+    }
+    if width < 100 {
+        let asked = stop.requested_at.map_or_else(String::new, |at| format!(" · {}", clock(at)));
+        return [
+            format!("{word}: EMERGENCY STOP (software) {headline}"),
+            format!(" red button: {red}{asked}{sent} · cause: {cause}"),
+            " No software on a PC is safety-rated: the red button is.".into(),
+        ];
+    }
+    [
+        format!("{word}: EMERGENCY STOP (software) {headline}"),
+        format!(" red button: {red}{asked}{sent} · cause: {cause}"),
+        " No software on a PC is safety-rated: the red button is. Reset, Enable and Start are three acts.".into(),
+    ]
 }

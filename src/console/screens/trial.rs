@@ -14,7 +14,13 @@ use ratatui::text::Line;
 /// Draws the screen.
 pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let wide = scene.view.tier() == Tier::Wide;
-    let heights = if wide { [6, 8, 12, 4, 0] } else { [5, 3, 7, 3, 0] };
+    // Before a trial the check-list needs the room, and there is nothing on the time axis.
+    let heights = match (wide, scene.live.trial.phase == TrialPhase::Idle) {
+        (true, false) => [6, 8, 12, 4, 0],
+        (true, true) => [6, 8, 5, 0, 0],
+        (false, false) => [5, 3, 7, 3, 0],
+        (false, true) => [3, 3, 4, 0, 0],
+    };
     let [now, steps, arms, time, rest] = Layout::vertical([
         Constraint::Length(heights[0]),
         Constraint::Length(heights[1]),

@@ -92,20 +92,22 @@ impl Figure {
         encoded(&smoothed(&buffer, drawn[0] as usize), drawn.map(|length| length / PNG_KEPT))
     }
 
-    /// Writes `STEM.svg` and `STEM.png` into a folder, which is made where it does not exist.
+    /// Writes `STEM.svg` and `STEM.png` into a folder, which is made where it does not exist. Returns the SVG document.
     ///
     /// # Errors
     /// [`PlotError`] names the file that could not be written, or says why the figure could not be drawn.
-    pub fn save(&self, folder: &Path, stem: &str) -> Result<(), PlotError> {
+    pub fn save(&self, folder: &Path, stem: &str) -> Result<String, PlotError> {
         let failed = |path: &Path| {
             let path = path.to_path_buf();
             move |source| PlotError::Writing { path, source }
         };
         fs::create_dir_all(folder).map_err(failed(folder))?;
         let vector = folder.join(format!("{stem}.svg"));
-        fs::write(&vector, self.svg()?).map_err(failed(&vector))?;
+        let document = self.svg()?;
+        fs::write(&vector, &document).map_err(failed(&vector))?;
         let picture = folder.join(format!("{stem}.png"));
-        fs::write(&picture, self.png()?).map_err(failed(&picture))
+        fs::write(&picture, self.png()?).map_err(failed(&picture))?;
+        Ok(document)
     }
 
     /// The legend's width and the size of the sheet, in points.
@@ -145,17 +147,21 @@ fn pixels(length: f64) -> u32 {
 fn smoothed(drawn: &[u8], width: usize) -> Vec<u8> {
     let kept = PNG_KEPT as usize;
     let mut picture = Vec::with_capacity(drawn.len() / (kept * kept));
+    let mut sums = vec![0_u32; width / kept * 3];
     for rows in drawn.chunks_exact(width * 3 * kept) {
-        for column in 0..width / kept {
-            for channel in 0..3 {
-                let sum: u32 = rows
-                    .chunks_exact(width * 3)
-                    .flat_map(|row| row.iter().skip(column * kept * 3 + channel).step_by(3).take(kept))
-                    .map(|value| u32::from(*value))
-                    .sum();
-                picture.push(u8::try_from(sum / (PNG_KEPT * PNG_KEPT)).unwrap_or(u8::MAX));
+        sums.fill(0);
+        for row in rows.chunks_exact(width * 3) {
+            for (sum, square) in sums.chunks_exact_mut(3).zip(row.chunks_exact(3 * kept)) {
+                let values = square.chunks_exact(3).flat_map(|pixel| pixel.iter().enumerate());
+                values.for_each(|(channel, value)| {
+                    if let Some(sum) = sum.get_mut(channel) {
+                        *sum += u32::from(*value);
+                    }
+                });
             }
         }
+        let means = sums.iter().map(|sum| u8::try_from(sum / (PNG_KEPT * PNG_KEPT)).unwrap_or(u8::MAX));
+        picture.extend(means);
     }
     picture
 }

@@ -1,6 +1,7 @@
 //! The page that compares several trials: one row a trial, the strategies side by side, learning and last paths.
 
-use super::page::Sheet;
+use super::answers::STATEMENTS;
+use super::page::{Drawings, Sketch};
 use super::{Iteration, TrialRecord, figures};
 use crate::body::Side;
 use crate::report::page::Page;
@@ -31,22 +32,36 @@ pub fn compare(trials: &[TrialRecord], folder: &Path) -> Result<PathBuf, PlotErr
     ];
     page.table("Trials", &head, &rows);
     strategies(&mut page, trials);
+    let drawings = Drawings::draw(sketches(trials), folder)?;
     page.section("Learning");
-    let mut sheet = Sheet { page: &mut page, folder, name: "compared" };
-    sheet.figure(&figures::energy(trials), "energy", "Energy by iteration; dashed: left arm.")?;
-    sheet.figure(&figures::duration(trials), "duration", "Duration of the iterations; dashed: left arm.")?;
+    drawings.put(&mut page, "compared-");
     page.section("Last paths");
     for trial in trials {
-        let mut sheet = Sheet { page: &mut page, folder, name: &trial.name };
-        for side in Side::BOTH {
-            let Some(last) = trial.passes(side).last() else { continue };
-            let caption = format!("{}: the last iteration of the {side} arm.", trial.name);
-            sheet.figure(&figures::paths(trial, last), &format!("last-{side}"), &caption)?;
-        }
+        drawings.put(&mut page, &format!("{}-last-", trial.name));
     }
     let path = folder.join("index.html");
     page.save(&path)?;
     Ok(path)
+}
+
+/// Every figure of the page that compares trials.
+fn sketches(trials: &[TrialRecord]) -> Vec<Sketch> {
+    let learned = [
+        ("energy", "Energy by iteration; dashed: left arm.", figures::energy(trials)),
+        ("duration", "Duration of the iterations; dashed: left arm.", figures::duration(trials)),
+    ];
+    let learned = learned.map(|(part, caption, figure)| Sketch {
+        stem: format!("compared-{part}"),
+        caption: caption.into(),
+        figure,
+    });
+    let last = |trial: &TrialRecord, side: Side| {
+        let pass = trial.passes(side).last()?;
+        let caption = format!("{}: the last iteration of the {side} arm.", trial.name);
+        Some(Sketch { stem: format!("{}-last-{side}", trial.name), caption, figure: figures::paths(trial, pass) })
+    };
+    let paths = trials.iter().flat_map(|trial| Side::BOTH.into_iter().filter_map(move |side| last(trial, side)));
+    learned.into_iter().chain(paths).collect()
 }
 
 fn trial_row(trial: &TrialRecord) -> Vec<String> {
@@ -123,13 +138,21 @@ fn strategies(page: &mut Page, trials: &[TrialRecord]) {
     let of = |kind: StrategyKind| trials.iter().filter(move |trial| trial.strategy() == Some(kind));
     let count = |kind: StrategyKind| of(kind).count().to_string();
     let counts = std::iter::once("trials".to_owned()).chain(run.iter().map(|kind| count(*kind))).collect();
-    let row = |(name, value): Criterion| {
+    let row = |name: &str, value: &dyn Fn(&TrialRecord) -> Option<f64>| {
         let cell = |kind: &StrategyKind| {
             mean(of(*kind).filter_map(value)).map_or(NOTHING.to_owned(), |value| format!("{value:.2}"))
         };
         std::iter::once(name.to_owned()).chain(run.iter().map(cell)).collect()
     };
-    let rows: Vec<Vec<String>> = std::iter::once(counts).chain(CRITERIA.map(row)).collect();
+    let mut rows: Vec<Vec<String>> = vec![counts];
+    rows.extend(CRITERIA.map(|(name, value)| row(name, &value)));
+    // What people said stands below what was measured, where anybody was asked.
+    for statement in &STATEMENTS {
+        let answer = |trial: &TrialRecord| trial.answers.to(statement).map(f64::from);
+        if trials.iter().any(|trial| answer(trial).is_some()) {
+            rows.push(row(&format!("{} (1 to 7)", statement.text), &answer));
+        }
+    }
     let head: Vec<&str> = std::iter::once("mean of the trials").chain(run.iter().map(|kind| kind.name())).collect();
     page.table("A trial counts for the strategy that it began with", &head, &rows);
 }

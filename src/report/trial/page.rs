@@ -1,9 +1,11 @@
 //! The page of a trial.
 
+use super::answers::{Respondent, STATEMENTS, Statement};
 use super::{TrialRecord, figures};
 use crate::body::Side;
 use crate::report::page::Page;
 use crate::report::plot::{Figure, PlotError};
+use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -12,34 +14,75 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`PlotError`] names the file that could not be written.
 pub fn write(trial: &TrialRecord, folder: &Path) -> Result<PathBuf, PlotError> {
-    let name = trial.name.clone();
-    fs::create_dir_all(folder).map_err(|source| PlotError::Writing { path: folder.to_path_buf(), source })?;
+    let name = &trial.name;
+    let drawings = Drawings::draw(sketches(trial), folder)?;
     let header = &trial.header;
     let mut page = Page::new(format!("Trial {name}"), &format!("valet {}, {}", header.software, header.watermark));
     summary(&mut page, trial);
-    let mut sheet = Sheet { page: &mut page, folder, name: &name };
-    forces(&mut sheet, trial)?;
-    learning(&mut sheet, trial)?;
-    waypoints(sheet.page, trial);
-    people(sheet.page, trial);
+    forces(&mut page, trial, &drawings);
+    learning(&mut page, trial, &drawings);
+    waypoints(&mut page, trial);
+    people(&mut page, trial);
     let path = folder.join(format!("{name}.html"));
     page.save(&path)?;
     Ok(path)
 }
 
-/// A page with the folder that its plots go to as files.
-pub(super) struct Sheet<'a> {
-    pub(super) page: &'a mut Page,
-    pub(super) folder: &'a Path,
-    pub(super) name: &'a str,
+/// A figure that is to be drawn: the stem of its files, what stands below it, and what it shows.
+pub(super) struct Sketch {
+    pub(super) stem: String,
+    pub(super) caption: String,
+    pub(super) figure: Figure,
 }
 
-impl Sheet<'_> {
-    /// Draws a figure into the page and writes it beside it as SVG and PNG.
-    pub(super) fn figure(&mut self, figure: &Figure, part: &str, caption: &str) -> Result<(), PlotError> {
-        figure.save(self.folder, &format!("{}-{part}", self.name))?;
-        self.page.figure(figure, caption).map(drop)
+/// The figures of a page as SVG documents, under the stems of their files.
+pub(super) struct Drawings(Vec<(Sketch, String)>);
+
+impl Drawings {
+    /// Draws figures side by side on all cores and writes each as SVG and PNG into a folder, which is made where it does
+    /// not exist.
+    pub(super) fn draw(sketches: Vec<Sketch>, folder: &Path) -> Result<Self, PlotError> {
+        fs::create_dir_all(folder).map_err(|source| PlotError::Writing { path: folder.to_path_buf(), source })?;
+        let drawn = sketches.into_par_iter().map(|sketch| {
+            let document = sketch.figure.save(folder, &sketch.stem)?;
+            Ok((sketch, document))
+        });
+        drawn.collect::<Result<_, PlotError>>().map(Self)
     }
+
+    /// Puts the figures whose stem begins so into a page, in their order. False where there are none.
+    pub(super) fn put(&self, page: &mut Page, stem: &str) -> bool {
+        let mut any = false;
+        for (sketch, document) in self.0.iter().filter(|(sketch, _)| sketch.stem.starts_with(stem)) {
+            page.drawing(document, &sketch.caption);
+            any = true;
+        }
+        any
+    }
+}
+
+/// Every figure of a trial's page.
+fn sketches(trial: &TrialRecord) -> Vec<Sketch> {
+    let sketch =
+        |part: String, caption: String, figure| Sketch { stem: format!("{}-{part}", trial.name), caption, figure };
+    let felt = Side::BOTH.into_iter().filter(|side| !trial.forces.get(*side).is_empty());
+    let forces = felt.map(|side| {
+        let caption = format!("Force at the {side} gripper, the detector's window and what it found.");
+        sketch(format!("force-{side}"), caption, figures::force(trial, side))
+    });
+    let one = std::slice::from_ref(trial);
+    let learned = [
+        ("energy", "Energy: the sum of the detected resistances of an iteration.", figures::energy(one)),
+        ("duration", "Duration of the iterations.", figures::duration(one)),
+    ];
+    let learned = learned.map(|(part, caption, figure)| sketch(part.into(), caption.into(), figure));
+    let paths = trial.iterations.iter().map(|pass| {
+        let part = format!("path-{}-{}", pass.side, pass.summary.iteration);
+        let caption = "Planned, travelled and updated path; ellipses: two deviations of the movement space.";
+        sketch(part, caption.into(), figures::paths(trial, pass))
+    });
+    let learned = learned.into_iter().filter(|_| !trial.iterations.is_empty());
+    forces.chain(learned).chain(paths).collect()
 }
 
 fn summary(page: &mut Page, trial: &TrialRecord) {
@@ -74,36 +117,27 @@ fn summary(page: &mut Page, trial: &TrialRecord) {
     }
 }
 
-fn forces(sheet: &mut Sheet<'_>, trial: &TrialRecord) -> Result<(), PlotError> {
-    sheet.page.section("Forces");
+fn forces(page: &mut Page, trial: &TrialRecord, drawings: &Drawings) {
+    page.section("Forces");
     for side in Side::BOTH {
-        if trial.forces.get(side).is_empty() {
-            sheet.page.paragraph(&format!("No force of the {side} arm was recorded."));
-            continue;
+        if !drawings.put(page, &format!("{}-force-{side}", trial.name)) {
+            page.paragraph(&format!("No force of the {side} arm was recorded."));
         }
-        let caption = format!("Force at the {side} gripper, the detector's window and what it found.");
-        sheet.figure(&figures::force(trial, side), &format!("force-{side}"), &caption)?;
     }
-    Ok(())
 }
 
-fn learning(sheet: &mut Sheet<'_>, trial: &TrialRecord) -> Result<(), PlotError> {
-    sheet.page.section("Iterations");
+fn learning(page: &mut Page, trial: &TrialRecord, drawings: &Drawings) {
+    page.section("Iterations");
     if trial.iterations.is_empty() {
-        sheet.page.paragraph("No iteration was finished.");
-        return Ok(());
+        page.paragraph("No iteration was finished.");
+        return;
     }
-    let one = std::slice::from_ref(trial);
-    sheet.page.table("Iterations", &ITERATION_HEAD, &iteration_rows(trial));
-    sheet.figure(&figures::energy(one), "energy", "Energy: the sum of the detected resistances of an iteration.")?;
-    sheet.figure(&figures::duration(one), "duration", "Duration of the iterations.")?;
-    sheet.page.section("Paths");
-    for pass in &trial.iterations {
-        let part = format!("path-{}-{}", pass.side, pass.summary.iteration);
-        let caption = "Planned, travelled and updated path; ellipses: two deviations of the movement space.";
-        sheet.figure(&figures::paths(trial, pass), &part, caption)?;
+    page.table("Iterations", &ITERATION_HEAD, &iteration_rows(trial));
+    for part in ["energy", "duration"] {
+        drawings.put(page, &format!("{}-{part}", trial.name));
     }
-    Ok(())
+    page.section("Paths");
+    drawings.put(page, &format!("{}-path-", trial.name));
 }
 
 const ITERATION_HEAD: [&str; 9] = [
@@ -183,15 +217,20 @@ fn people(page: &mut Page, trial: &TrialRecord) {
     } else {
         page.table("Notes of the operator", &["time (s)", "note"], &notes);
     }
-    let blank = |question: &str| vec![question.to_owned(), "1   2   3   4   5   6   7".to_owned()];
-    let participant = [
-        "The robot dressed me successfully.",
-        "The force that I felt was appropriate.",
-        "I was comfortable.",
-        "The robot coped with my movement.",
-    ];
-    let operator = ["I knew at every moment what the robot would do next.", "I could have stopped it at any moment."];
-    let head = ["statement", "1 disagree \u{2013} 7 agree"];
-    page.table("Participant (to be filled in by hand)", &head, &participant.map(blank));
-    page.table("Operator (to be filled in by hand)", &head, &operator.map(blank));
+    questionnaire(page, trial, Respondent::Participant, "Participant");
+    questionnaire(page, trial, Respondent::Operator, "Operator");
+}
+
+/// The answers that were given, and a scale to be marked by hand where none was.
+fn questionnaire(page: &mut Page, trial: &TrialRecord, respondent: Respondent, title: &str) {
+    let statements = STATEMENTS.iter().filter(|statement| statement.respondent == respondent);
+    let row = |statement: &Statement| {
+        let answer = trial.answers.to(statement);
+        let cell = answer.map_or_else(|| "1   2   3   4   5   6   7".to_owned(), |answer| answer.to_string());
+        vec![statement.text.to_owned(), cell]
+    };
+    let rows: Vec<_> = statements.clone().map(row).collect();
+    let is_open = statements.clone().all(|statement| trial.answers.to(statement).is_none());
+    let title = if is_open { format!("{title} (to be filled in by hand)") } else { title.to_owned() };
+    page.table(&title, &["statement", "1 disagree \u{2013} 7 agree"], &rows);
 }
