@@ -10,7 +10,7 @@ use crate::body::Side;
 use crate::command::{Command, Origin};
 use crate::kinematics::{JointVector, Scene};
 use crate::snapshot::Snapshot;
-use crate::supervisor::{Effect, Input, LinkEvent, PlanOrder, Supervisor};
+use crate::supervisor::{Effect, Input, LinkEvent, MovementOrder, PlanOrder, Supervisor};
 use crate::time::Stamp;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -74,10 +74,11 @@ fn inbox(capacity: usize) -> (Inbox, Waiting) {
 }
 
 impl Inbox {
-    /// Puts an input into the inbox; where that is full, the input is lost and counted. What an operator asks has room of
-    /// its own: however many samples wait, it is not lost among them.
+    /// Puts an input into the inbox; where that is full, the input is lost and counted. What an operator asks and what was
+    /// asked for once has room of its own: however many samples wait, it is not lost among them.
     pub fn offer(&self, input: Input) {
-        let queue = if matches!(input, Input::Operator { .. }) { &self.orders } else { &self.samples };
+        let queue =
+            if matches!(input, Input::Operator { .. } | Input::Fitted { .. }) { &self.orders } else { &self.samples };
         if let Err(TrySendError::Full(_)) = queue.try_send(input) {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
@@ -123,6 +124,7 @@ struct Worker {
     /// Stops of the latch that the supervisor knows of.
     stops_known: u64,
     waiting: Waiting,
+    inbox: Inbox,
     snapshots: SharedSnapshot,
     told: Sender<Effect>,
     ended: Arc<AtomicBool>,
@@ -162,6 +164,7 @@ impl Engine {
             stops_known: latch.requests(),
             latch: latch.clone(),
             waiting,
+            inbox: inbox.clone(),
             snapshots: snapshots.clone(),
             told,
             ended: Arc::clone(&ended),
@@ -320,6 +323,15 @@ impl Worker {
         }
     }
 
+    /// Has a movement space fitted by a thread of its own: no beat waits for it.
+    fn fit(&mut self, order: MovementOrder) {
+        let (inbox, number) = (self.inbox.clone(), order.number);
+        let fit = thread::Builder::new().name("fit".into()).spawn(move || inbox.offer(order.answer()));
+        if let Err(error) = fit {
+            self.step(&Input::Fitted { number, space: Err(format!("this computer has no thread for it: {error}")) });
+        }
+    }
+
     fn carry_out(&mut self, now: Stamp, effect: Effect) {
         match effect {
             // The latch may have been set since the supervisor decided: nothing moves any more.
@@ -334,6 +346,7 @@ impl Worker {
             Effect::Switch(request) if request != SwitchRequest::Stop && self.latch.requests() != self.stops_known => {}
             Effect::Plan(order) => self.outlet.plan(order),
             Effect::Switch(request) => self.outlet.switch(request),
+            Effect::Fit(order) => self.fit(order),
             told => {
                 // Telling is best effort; the record has it all.
                 let _ = self.told.try_send(told);

@@ -28,5 +28,5 @@ pub use file::{JournalFile, close_journal};
 pub use player::{Change, Player};
 pub use reader::{Reading, read, read_header};
 pub use recorder::{Recorder, RecorderNotice, RecorderStatus, Told};
-pub use replay::{Difference, Replay, learned_in};
+pub use replay::{Difference, Learned, Replay, learned_in};
 pub use writer::JournalWriter;

@@ -10,6 +10,7 @@ mod compare;
 mod drive;
 pub mod effect;
 pub mod input;
+mod movement;
 mod operator;
 mod planner;
 mod protection;
@@ -23,6 +24,7 @@ mod warm;
 
 pub use effect::{Effect, Effects, PlanOrder};
 pub use input::{EndpointSample, Input, JointSample, LinkEvent};
+pub use movement::MovementOrder;
 pub use settings::{PlannerKind, SettingsError, Setup, SupervisorSettings};
 pub use warm::WarmStart;
 
@@ -30,6 +32,7 @@ use crate::assembly::{RobotState, StopSource, SwitchRequest};
 use crate::body::{BodyPose, PerSide, Side};
 use crate::geometry::Vector;
 use crate::kinematics::RobotModel;
+use crate::modelling::ArmSpace;
 use crate::safety::{Reaction, Verdict};
 use crate::sequencing::Trial;
 use crate::snapshot::{Level, Outcome, Snapshot};
@@ -88,6 +91,10 @@ pub struct Supervisor {
     view: Snapshot,
     comparison: compare::Comparison,
     sign_check: Option<sign_check::SignCheck>,
+    /// A recording of the person's movement, what earlier ones came to, and how many fits were asked for.
+    movement: Option<movement::Recording>,
+    recorded: PerSide<Option<ArmSpace>>,
+    fits_asked: u64,
     /// What the robot's switch was asked and has not followed yet.
     asked: Option<switching::Asked>,
     effects: Effects,
@@ -119,6 +126,9 @@ impl Supervisor {
             view: Snapshot::default(),
             comparison: compare::Comparison::default(),
             sign_check: None,
+            movement: None,
+            recorded: PerSide::default(),
+            fits_asked: 0,
             asked: None,
             effects: Effects::new(),
         };
@@ -139,6 +149,7 @@ impl Supervisor {
             Input::Operator { command, origin } => self.obey(now, command, *origin),
             Input::Link(event) => self.see_link(now, event),
             Input::Planned { number, ways } => self.see_planned(now, *number, ways),
+            Input::Fitted { number, space } => self.see_fitted(now, *number, space),
             Input::SetpointRefused { side, reason } => {
                 self.hold(now, &format!("the {side} arm's next position was refused: {reason}"));
             }
@@ -156,6 +167,7 @@ impl Supervisor {
         let force = if in_trial { self.protection.judge_force() } else { Verdict::clear() };
         self.obey_verdict(now, &inputs.stricter(self.tempered(now, force)));
         self.follow_switch(now);
+        self.follow_movement(now);
         if self.protection.stop().is_latched() {
             self.repeat_stop(now);
             return;
@@ -301,6 +313,7 @@ impl Supervisor {
             self.comparison.is_due();
         }
         self.show_body(now, pose);
+        self.record_movement(pose);
     }
 
     fn see_link(&mut self, now: Stamp, event: &LinkEvent) {

@@ -47,6 +47,9 @@ pub(super) struct Arguments {
     /// The garment, by its name in the profile; the first one there where none is named.
     #[arg(long, value_name = "NAME")]
     pub(super) garment_name: Option<String>,
+    /// For so many seconds the person moves both arms about first, as before a first trial: something to record.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    pub(super) exercise: f64,
     /// How many trials to run, with consecutive seeds.
     #[arg(long, default_value_t = 1)]
     pub(super) trials: u32,
@@ -77,6 +80,7 @@ impl Default for Arguments {
             strategy: None,
             garment: GarmentModel::default(),
             garment_name: None,
+            exercise: 0.0,
             trials: 1,
             json: false,
             record: RecordArguments::default(),
@@ -117,6 +121,7 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
         person: profile.simulated.clone().unwrap_or_default(),
         garment: profile.garment(arguments.garment_name.as_deref()).cloned().unwrap_or_default(),
         backend: arguments.garment.into(),
+        exercise_seconds: arguments.exercise,
         ..WorldSetup::default()
     };
     output.line(format!("seed {seed}, strategy {strategy}"))?;

@@ -138,11 +138,20 @@ pub(super) fn learn(
     key: Option<&Key>,
 ) -> Result<(), Failure> {
     let learned = learned_in(JournalFile::new(trial, key.cloned())).map_err(Failure::configuration)?;
-    if learned.is_empty() {
+    let recorded = learned.spaces.iter().any(|(_, space)| space.is_some());
+    let space = recorded.then(|| person.takes_space(&learned.spaces)).transpose();
+    if let Err(reason) = &space {
+        output.line(format!("The recorded movement is not kept: {reason}"))?;
+    }
+    let space = space.ok().flatten();
+    if learned.paths.is_empty() && space.is_none() {
         return output.line(format!("{}: no arm was dressed to its end, nothing was learned", trial.display()));
     }
-    person.add_learned(&learned, key).map_err(Failure::configuration)?;
-    for path in &learned {
+    person.add_learned(&learned.paths, space.as_ref(), key).map_err(Failure::configuration)?;
+    if space.is_some() {
+        output.line(format!("{}: the recorded movement space was written", person.path.display()))?;
+    }
+    for path in &learned.paths {
         output.line(format!(
             "{}: the next trial is offered the {} arm's path ({}, {:.1} N) of {}",
             person.path.display(),

@@ -113,6 +113,9 @@ pub(super) struct Arguments {
     /// End when the standard input does: whoever started this simulator is gone then.
     #[arg(long, hide = true)]
     pub(super) until_input_ends: bool,
+    /// For so many seconds the person moves both arms about first, as before a first trial: something to record.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    pub(super) exercise: f64,
     /// Instead of a robot: write depth images of simulated people with their truth into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) images: Option<PathBuf>,
@@ -227,6 +230,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         backend: arguments.garment.into(),
         arms_hide_joints: arguments.skeleton == SkeletonTracker::Occluded,
         faults: FaultPlan { faults: arguments.fault.clone() },
+        exercise_seconds: arguments.exercise,
         ..WorldSetup::default()
     };
     let world = World::new(&setup).map_err(Failure::configuration)?;

@@ -94,6 +94,7 @@ impl Bench {
             latch: stop.latch(),
             stops_known: 0,
             waiting,
+            inbox: inbox.clone(),
             snapshots: SharedSnapshot::default(),
             told,
             ended: Arc::default(),
@@ -337,6 +338,22 @@ impl Outlet for Hanging {
         let _ = self.0.recv();
     }
     fn record(&mut self, _: Stamp, _: &Input, _: &[Effect]) {}
+}
+
+#[test]
+fn a_fit_is_done_elsewhere_and_its_answer_comes_in_past_a_full_inbox() {
+    let mut bench = Bench::new(None);
+    let order = MovementOrder {
+        number: 7,
+        side: Side::Right,
+        places: [Vec::new(), Vec::new(), Vec::new()],
+        settings: crate::modelling::FitSettings::default(),
+        seed: 1,
+    };
+    (0..9).for_each(|_| bench.inbox.offer(Input::Tick));
+    bench.worker.carry_out(Stamp::ZERO, Effect::Fit(order));
+    let answer = bench.worker.waiting.orders.recv_timeout(PATIENCE).unwrap();
+    assert!(matches!(answer, Input::Fitted { number: 7, space: Err(_) }), "{answer:?}");
 }
 
 #[test]

@@ -115,14 +115,19 @@ impl VirtualTrial {
 
     fn step(&mut self, input: &Input, observe: &mut impl FnMut(Stamp, &Input, &[Effect])) -> Vec<Effect> {
         let now = self.now();
-        let effects = self.supervisor.step(now, input);
+        let mut effects = self.supervisor.step(now, input);
         observe(now, input, &effects);
+        let mut answers = Vec::new();
         for effect in &effects {
             match effect {
                 Effect::Setpoint { side, joints } => self.world.command_joints(*side, joints, now),
                 Effect::Switch(request) => self.world.switch(*request, now),
+                Effect::Fit(order) => answers.push(order.answer()),
                 _ => {}
             }
+        }
+        for answer in answers {
+            effects.extend(self.step(&answer, observe));
         }
         effects
     }

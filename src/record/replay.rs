@@ -4,8 +4,9 @@ use super::entry::{Header, Recipe, Step};
 use super::error::JournalError;
 use super::file::JournalFile;
 use super::{Reading, read};
+use crate::body::PerSide;
 use crate::kinematics::RobotModel;
-use crate::modelling::MovementSpace;
+use crate::modelling::{ArmSpace, MovementSpace};
 use crate::supervisor::{Effect, Setup, Supervisor, WarmStart};
 use crate::time::Stamp;
 use serde::Serialize;
@@ -120,19 +121,31 @@ fn in_words(effects: &[Effect]) -> String {
     serde_json::to_string(effects).unwrap_or_else(|_| format!("{effects:?}"))
 }
 
-/// What a recorded trial has learned, with the journal's name as its source.
+/// What a recorded session found out about its person.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Learned {
+    /// Paths of arms that were dressed, the newest last, with the journal's name as their source.
+    pub paths: Vec<WarmStart>,
+    /// The movement space of each arm whose movement was recorded; the newest one.
+    pub spaces: PerSide<Option<ArmSpace>>,
+}
+
+/// What a recorded session has learned.
 ///
 /// # Errors
 /// [`JournalError`] where the journal cannot be read at all.
-pub fn learned_in(journal: impl Into<JournalFile>) -> Result<Vec<WarmStart>, JournalError> {
+pub fn learned_in(journal: impl Into<JournalFile>) -> Result<Learned, JournalError> {
     let journal = journal.into();
     let trial = journal.name();
-    let mut learned = Vec::new();
+    let mut learned = Learned::default();
     read(&journal, |_, step| {
-        learned.extend(step.effects.into_iter().filter_map(|effect| match effect {
-            Effect::Learned(found) => Some(WarmStart { trial: trial.clone(), ..found }),
-            _ => None,
-        }));
+        for effect in step.effects {
+            match effect {
+                Effect::Learned(found) => learned.paths.push(WarmStart { trial: trial.clone(), ..found }),
+                Effect::Recorded { side, space } => *learned.spaces.get_mut(side) = Some(*space),
+                _ => {}
+            }
+        }
     })?;
     Ok(learned)
 }

@@ -14,6 +14,7 @@ mod reaction;
 pub(super) use arm::point_along;
 pub use arm::{ArmAngles, ArmSizes, SimulatedArm};
 pub use body::{BodySizes, Sex};
+pub(super) use exercise::Exercise;
 pub use exercise::Seen;
 pub use impairment::Impairment;
 pub use movement::{Movement, MovementKind};

@@ -8,7 +8,7 @@ pub use setup::{Backend, SimError, WorldSetup};
 use super::baxter::{SimulatedLimb, Switch, UNTUCKED_LEFT, UNTUCKED_RIGHT};
 use super::faults::{ActiveFaults, FaultPlan};
 use super::garment::{Garment, Holder, Wearing};
-use super::person::{Reaction, SimulatedPerson};
+use super::person::{Exercise, Reaction, SimulatedPerson};
 use super::random::{Purpose, Random};
 use super::wrench::WrenchSense;
 use crate::assembly::{RobotState, SwitchRequest};
@@ -72,6 +72,7 @@ pub struct World {
     garment: Box<dyn Garment>,
     person: SimulatedPerson,
     reactions: PerSide<Reaction>,
+    exercise: Exercise,
     camera: Camera,
     faults: FaultPlan,
     losses: Random,
@@ -116,6 +117,7 @@ impl World {
             garment: setup.garment_model(),
             person: setup.person.clone(),
             reactions,
+            exercise: Exercise::new(seed, setup.exercise_seconds),
             camera: Camera::new(setup.pose_noise_metres, Random::new(seed, Purpose::Camera), setup.arms_hide_joints),
             faults: setup.faults.clone(),
             losses: Random::new(seed, Purpose::Faults),
@@ -266,11 +268,12 @@ impl World {
         pose
     }
 
-    /// Where the person's arms are now: the elbow gives way, hand and shoulder stay.
+    /// Where the person's arms are now: in the exercise, then at rest; the elbow gives way, hand and shoulder stay.
     fn posture(&self) -> PerSide<super::person::ArmPoints> {
         let rest = self.person.posture();
+        let seconds = self.ticks as f64 * TICK_SECONDS;
         PerSide::from_fn(|side| {
-            let mut arm = *rest.get(side);
+            let mut arm = self.exercise.arm(&self.person, side, seconds).unwrap_or(*rest.get(side));
             arm.elbow += self.reactions.get(side).displacement();
             arm
         })

@@ -36,6 +36,9 @@ pub struct PathView {
     pub changes: Shared<Vec<WaypointRow>>,
     /// The gripper; `None` where it is not known freshly.
     pub gripper: Option<Point>,
+    /// Where the joints were seen while the person's movement was recorded last, thinned out to what a screen can show.
+    #[serde(default)]
+    pub seen: Shared<Vec<Point>>,
     /// Component ellipses of the movement space.
     pub ellipses: Shared<Vec<EllipseView>>,
 }

@@ -131,7 +131,7 @@ impl Supervisor {
             return row;
         }
         let judged = self.arm_joints(row.side).ok().and_then(|joints| {
-            let space = self.setup.space.as_ref()?.arms.get(row.side).clone();
+            let space = self.space_of(row.side)?.clone();
             let strategy = self.build_strategy(row.side, kind, joints).ok()?;
             let reach = Reach::new(space, &joints, StickFit::coarse(Space::Spatial));
             Some(reach.along(strategy.path(), polyline_length(strategy.path()) / PIECES))

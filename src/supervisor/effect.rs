@@ -3,11 +3,12 @@
 //! The engine carries effects out through guarded ports and hands them to the recorder. An effect is a decision, not a
 //! deed: whether a setpoint really left the node is told back as an input.
 
-use super::WarmStart;
+use super::{MovementOrder, WarmStart};
 use crate::assembly::SwitchRequest;
 use crate::body::{PerSide, Side};
 use crate::command::CommandReceipt;
 use crate::kinematics::{JointVector, Target};
+use crate::modelling::ArmSpace;
 pub use crate::snapshot::{Level, Outcome};
 use crate::strategy::{IterationSummary, StrategyKind, WaypointChange};
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,8 @@ pub enum Effect {
     },
     /// Ask the planner outside for ways; it answers with [`super::Input::Planned`].
     Plan(PlanOrder),
+    /// Fit a movement space where nobody waits for it; the answer comes as [`super::Input::Fitted`].
+    Fit(MovementOrder),
     /// Ask something of the robot's switch.
     Switch(SwitchRequest),
     /// A stop was latched.
@@ -82,6 +85,13 @@ pub enum Effect {
     },
     /// An arm is dressed: what was learned for it.
     Learned(WarmStart),
+    /// A person's movement was recorded: the movement space that it came to.
+    Recorded {
+        /// Whose arm.
+        side: Side,
+        /// Where its joints can be.
+        space: Box<ArmSpace>,
+    },
     /// The trial ended.
     TrialEnded {
         /// How.

@@ -8,6 +8,7 @@ use crate::body::{BodyPose, PerSide, Side};
 use crate::command::{Command, Origin};
 use crate::geometry::{Pose, Wrench};
 use crate::kinematics::Ways;
+use crate::modelling::ArmSpace;
 use crate::time::Stamp;
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +48,13 @@ pub enum Input {
         number: u64,
         /// The ways, or why there are none.
         ways: Result<Ways, String>,
+    },
+    /// A movement space was fitted, as [`super::Effect::Fit`] asked.
+    Fitted {
+        /// Which question.
+        number: u64,
+        /// The space, or why there is none.
+        space: Result<Box<ArmSpace>, String>,
     },
     /// A setpoint did not leave: a guard refused it. The text says what, value and range.
     SetpointRefused {

@@ -61,7 +61,9 @@ impl Supervisor {
                 Err("profile and garment are chosen when valet is started: --profile".into())
             }
             Command::SignCheck(side) => self.begin_sign_check(now, *side),
-            Command::RecordMovement { .. } | Command::SetRecording(_) => self.obey_shell(now, command),
+            Command::RecordMovement { side, seconds } => self.obey_record_movement(now, *side, *seconds),
+            // The recorder sees the receipt and acts.
+            Command::SetRecording(_) => Ok("now".into()),
         }
     }
 
@@ -210,6 +212,7 @@ impl Supervisor {
             right: self.lay_out(now, Side::Right, plan.arms.right)?,
         };
         self.trial = Some(Trial::new(self.setup.settings.trial.clone(), plan, strategies));
+        self.end_movement_for_trial(now);
         self.mode = Mode::Running;
         self.protection.watchdogs_mut().acknowledge();
         self.tare_at_rest(now);
@@ -244,7 +247,7 @@ impl Supervisor {
         kind: StrategyKind,
         joints: [Point; 3],
     ) -> Result<Box<dyn Strategy>, String> {
-        let space = self.setup.space.as_ref().map(|space| space.arms.get(side).clone());
+        let space = self.space_of(side).cloned();
         let context = ArmContext { initial: joints, space, seed: self.setup.seed };
         strategy::build(kind, &self.setup.settings.strategies, &context).map_err(|error| error.to_string())
     }
@@ -313,15 +316,6 @@ impl Supervisor {
             return Err("an arm moves: tare only while both stand still".into());
         }
         self.protection.tare(now, side).map(|zero| format!("now: zero is {:.1} {:.1} {:.1} N", zero.x, zero.y, zero.z))
-    }
-
-    /// Commands that the shell around the core carries out: it sees the receipt and acts.
-    fn obey_shell(&mut self, now: Stamp, command: &Command) -> Answer {
-        if self.mode == Mode::Running && matches!(command, Command::RecordMovement { .. }) {
-            return Err("the person's movement is recorded while no trial runs".into());
-        }
-        let _ = now;
-        Ok("now".into())
     }
 
     /// The robot model that motions are planned with.

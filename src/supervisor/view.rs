@@ -52,13 +52,18 @@ impl Supervisor {
                 self.setup.settings.strategies.learning.maximum_iterations;
             let freshness = Freshness { last: None, deadline: self.protection.force_deadline().as_secs_f64() };
             self.view.sides.get_mut(side).force.freshness = freshness;
-            let space = self.setup.space.as_ref().map(|space| space.arms.get(side));
-            self.view.sides.get_mut(side).path.ellipses = space.map(ellipses_of).unwrap_or_default().into();
+            self.show_space(side, None);
         }
         self.view.choices.make_mut().strategies = StrategyKind::ALL.to_vec();
         self.comparison.is_due();
         self.show_steps();
         self.show_settings();
+    }
+
+    /// Shows a movement space; where none is given, the one that is used.
+    pub(super) fn show_space(&mut self, side: Side, space: Option<&ArmSpace>) {
+        let ellipses = space.or_else(|| self.space_of(side)).map(ellipses_of).unwrap_or_default();
+        self.view.sides.get_mut(side).path.ellipses = ellipses.into();
     }
 
     pub(super) fn show_steps(&mut self) {

@@ -61,6 +61,7 @@ fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failur
     let typed = ["sim", "--master", "embedded", "--port"].map(String::from).into_iter();
     let typed = typed.chain([port.to_string(), "--seed".into(), arguments.seed.to_string()]);
     let typed = typed.chain(["--garment".to_owned(), arguments.garment.name().to_owned()]);
+    let typed = typed.chain(["--exercise".to_owned(), arguments.exercise.to_string()]);
     let profile = arguments.profile.iter().flat_map(|name| ["--profile".to_owned(), name.clone()]);
     let name = arguments.garment_name.iter().flat_map(|name| ["--garment-name".to_owned(), name.clone()]);
     let typed = typed.chain(profile).chain(name).chain(["--until-input-ends".to_owned()]);

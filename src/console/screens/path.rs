@@ -92,6 +92,9 @@ fn draw_view(scene: &Scene<'_>, camera: Camera, area: Rect, buffer: &mut Buffer)
     }
     let mut grid = DotGrid::new(plot);
     let projection = Projection::new(camera, &points, &grid);
+    for place in path.seen.iter() {
+        grid.point(projection.dot(place), Role::Muted);
+    }
     for ellipse in path.ellipses.iter() {
         draw_ellipse(&mut grid, &projection, ellipse);
     }
@@ -135,6 +138,7 @@ fn everything(scene: &Scene<'_>, shown: &Snapshot, path: &PathView) -> Vec<Point
     let mut points: Vec<Point> = lines.iter().flat_map(|points| points.iter().copied()).collect();
     points.extend(path.gripper);
     points.extend(path.ellipses.iter().map(|ellipse| ellipse.mean));
+    points.extend(path.seen.iter().copied());
     points.extend(sticks(scene, shown).into_iter().map(|(_, point)| point));
     points.retain(|point| point.coords.iter().all(|value| value.is_finite()));
     points

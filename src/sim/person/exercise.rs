@@ -4,8 +4,8 @@
 //! person waits for the sleeve, as the movement class of the profile says (`movement`).
 
 use super::super::random::{Purpose, Random};
-use super::SimulatedPerson;
 use super::impairment::range_share;
+use super::{ArmAngles, ArmPoints, SimulatedPerson};
 use crate::body::{PerSide, Side};
 use crate::geometry::Vector;
 
@@ -22,23 +22,65 @@ const SEEN_METRES: f64 = 0.008;
 /// Places of hand, elbow and shoulder in metres in `base`, as a camera saw them.
 pub type Seen = [Vec<Vector>; 3];
 
+/// How long the arms take to come to rest at the end, in seconds (ours).
+const COMING_TO_REST_SECONDS: f64 = 1.0;
+
+/// How one person moves both arms about: the phases of the movements come from a seed.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::sim) struct Exercise {
+    phases: PerSide<[f64; 4]>,
+    seconds: f64,
+}
+
+impl Exercise {
+    /// An exercise that ends after `seconds`.
+    pub(in crate::sim) fn new(seed: u64, seconds: f64) -> Self {
+        let phases = PerSide::from_fn(|side| phases_of(&mut Random::new(seed, purpose_of(side))));
+        Self { phases, seconds }
+    }
+
+    /// An arm at a moment, seconds from the start; at rest once the exercise is over.
+    pub(in crate::sim) fn arm(&self, person: &SimulatedPerson, side: Side, seconds: f64) -> Option<ArmPoints> {
+        let share = ((self.seconds - seconds) / COMING_TO_REST_SECONDS).min(1.0);
+        (share > 0.0).then(|| {
+            let angles = person.exercising(side, self.phases.get(side), seconds, share);
+            angles.points(side, &person.shoulder(side), &person.body.arm_sizes())
+        })
+    }
+}
+
+const fn purpose_of(side: Side) -> Purpose {
+    match side {
+        Side::Left => Purpose::LeftArm,
+        Side::Right => Purpose::RightArm,
+    }
+}
+
+fn phases_of(random: &mut Random) -> [f64; 4] {
+    [(); 4].map(|()| random.between(0.0, std::f64::consts::TAU))
+}
+
 impl SimulatedPerson {
+    /// The angles of an arm at a moment of the exercise, with a share of its usual extent.
+    fn exercising(&self, side: Side, phases: &[f64; 4], seconds: f64, share: f64) -> ArmAngles {
+        let arm = self.arm(side);
+        let mut movement = arm.movement;
+        movement.flexibility_share *= range_share(&arm.impairments) * share;
+        movement.angles(&arm.posture, side, &self.body.arm_sizes(), phases, seconds)
+    }
+
     /// What a camera sees of both arms while the person moves them about; same seed, same places.
     #[must_use]
     pub fn exercise(&self, seed: u64) -> PerSide<Seen> {
         let sizes = self.body.arm_sizes();
         PerSide::from_fn(|side| {
-            let purpose = if side == Side::Left { Purpose::LeftArm } else { Purpose::RightArm };
-            let mut random = Random::new(seed, purpose);
-            let phases = [(); 4].map(|()| random.between(0.0, std::f64::consts::TAU));
-            let arm = self.arm(side);
-            let mut movement = arm.movement;
-            movement.flexibility_share *= range_share(&arm.impairments);
+            let mut random = Random::new(seed, purpose_of(side));
+            let phases = phases_of(&mut random);
             let mut places_seen = Seen::default();
             for beat in 0..BEATS {
                 let sway = random.normal_vector(SWAY_METRES);
                 let seconds = f64::from(beat) / RATE_HZ;
-                let angles = movement.angles(&arm.posture, side, &sizes, &phases, seconds);
+                let angles = self.exercising(side, &phases, seconds, 1.0);
                 let places = angles.points(side, &(self.shoulder(side) + sway), &sizes).dressed();
                 for (list, place) in places_seen.iter_mut().zip(places) {
                     list.push(place.coords + random.normal_vector(SEEN_METRES));

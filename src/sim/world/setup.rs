@@ -41,6 +41,8 @@ pub struct WorldSetup {
     pub arms_hide_joints: bool,
     /// The person's how manieth experiment this is, from 0: in the first the preferred movement is further off.
     pub experiment: u32,
+    /// For so many seconds from the start the person moves both arms about, as before a first trial (thesis section 3.3).
+    pub exercise_seconds: f64,
     /// What goes wrong, and when.
     pub faults: FaultPlan,
     /// Everything random comes from it.
@@ -59,6 +61,7 @@ impl Default for WorldSetup {
             pose_noise_metres: 0.004,
             arms_hide_joints: false,
             experiment: 1,
+            exercise_seconds: 0.0,
             faults: FaultPlan::default(),
             seed: 1,
         }
@@ -109,6 +112,7 @@ impl WorldSetup {
             ("wrench.unmodelled_mass_kilograms", self.wrench.unmodelled_mass_kilograms, 0.0, 5.0),
             ("dynamics.lag_seconds", self.dynamics.lag_seconds, 0.0, 1.0),
             ("pose_noise_metres", self.pose_noise_metres, 0.0, 0.2),
+            ("exercise_seconds", self.exercise_seconds, 0.0, 600.0),
         ] {
             if !(lowest..=highest).contains(&value) {
                 return Err(SimError::Sense { key, value, lowest, highest });

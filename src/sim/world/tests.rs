@@ -190,3 +190,22 @@ fn a_world_that_is_woken_late_gives_the_same_trial_for_the_same_commands() {
     assert_eq!(run(&|beat| beat % 7 == 3), every_beat);
     assert_eq!(run(&|_| false), every_beat);
 }
+
+#[test]
+fn a_person_who_exercises_comes_to_rest_in_the_posture_of_the_profile() {
+    let mut world = World::new(&WorldSetup { exercise_seconds: 5.0, ..WorldSetup::default() }).unwrap();
+    let rest = SimulatedPerson::default().posture().right;
+    let mut furthest = 0.0_f64;
+    for beat in 0..450 {
+        world.step(at(beat));
+        let arm = world.person_arms().right;
+        assert!((arm.shoulder - rest.shoulder).norm() < 1e-9, "the exercise leaves the trunk where it is");
+        furthest = furthest.max((arm.hand - rest.hand).norm());
+    }
+    assert!(furthest > 0.1, "{furthest}");
+    let before = world.person_arms().right.hand;
+    world.step(at(455));
+    assert!((world.person_arms().right.hand - before).norm() < 0.05, "the arm comes to rest without a jump");
+    world.step(at(520));
+    assert!((world.person_arms().right.hand - rest.hand).norm() < 1e-9);
+}
