@@ -16,6 +16,8 @@ use std::time::Duration;
 
 /// How long the master may take for an answer: a healthy one on a local network takes milliseconds.
 pub(super) const MASTER_LIMIT: Duration = Duration::from_secs(2);
+/// How long it may take at the start: nothing waits for it but the operator, and a master may be starting up itself.
+const START_LIMIT: Duration = Duration::from_secs(5);
 /// How long the way out may take.
 const SHUTDOWN_LIMIT: Duration = Duration::from_secs(1);
 /// Lines of log that may wait for a slow `/rosout`.
@@ -33,7 +35,7 @@ pub fn master_uri() -> String {
 /// # Errors
 /// [`RosError::NoMaster`] after at most a few seconds.
 pub fn probe_master(uri: &str) -> Result<(), RosError> {
-    call_ros(uri, "getPid", &[Value::text("/valet_probe")], MASTER_LIMIT)
+    call_ros(uri, "getPid", &[Value::text("/valet_probe")], START_LIMIT)
         .map(drop)
         .map_err(|error| RosError::NoMaster { uri: uri.to_owned(), reason: error.to_string() })
 }
