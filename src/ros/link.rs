@@ -87,7 +87,7 @@ impl RobotLink {
         let services = services::serve(&sink)?;
         let ended = Arc::new(AtomicBool::new(false));
         Watch::new(node.master(), &node.name(), sink, subscriptions)
-            .guarding(commanding_topics())
+            .guarding(&commanding_topics())
             .start(Arc::clone(&ended))
             .map_err(|error| RosError::thread("the watch over the ROS master", error))?;
         diagnostics::start(node.name(), showing.clone(), monitors.clone(), Arc::clone(&ended))

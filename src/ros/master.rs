@@ -137,11 +137,11 @@ impl Service {
         Value::Integer(i32::from(count))
     }
 
-    fn set_parameter(&self, key: &str, value: Value) -> Answer {
+    fn set_parameter(&self, key: &str, value: Value) -> Value {
         let mut parameters = self.parameters();
         let notices = parameters.set(key, value);
         self.tell(notices);
-        Ok(Value::Integer(0))
+        Value::Integer(0)
     }
 
     fn delete_parameter(&self, key: &str) -> Answer {
@@ -192,7 +192,7 @@ impl Service {
         let key = || resolve(text(0), caller);
         Some(match method {
             "setParam" => match rest.get(1) {
-                Some(value) => self.set_parameter(&key(), value.clone()),
+                Some(value) => Ok(self.set_parameter(&key(), value.clone())),
                 None => Err("setParam needs a value".to_owned()),
             },
             "getParam" => self.parameters().get(&key()).ok_or_else(|| format!("Parameter [{}] is not set", key())),

@@ -4,12 +4,6 @@
 //! robot's state, of which two forms are in use.
 
 #![allow(clippy::all, clippy::pedantic, missing_docs, reason = "the generated code follows its generator's habits")]
-#![expect(
-    clippy::indexing_slicing,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "the generated code follows its generator's habits"
-)]
 
 rosrust::rosmsg_include!(
     baxter_core_msgs / AssemblyState,

@@ -254,16 +254,15 @@ mod tests {
     use super::*;
 
     fn trajectory(names: &[&str], points: &[&[f64]]) -> trajectory_msgs::JointTrajectory {
-        let mut trajectory = trajectory_msgs::JointTrajectory::default();
-        trajectory.joint_names = names.iter().map(|name| (*name).to_owned()).collect();
-        trajectory.points = points
-            .iter()
-            .map(|positions| trajectory_msgs::JointTrajectoryPoint {
-                positions: positions.to_vec(),
-                ..Default::default()
-            })
-            .collect();
-        trajectory
+        let point = |positions: &&[f64]| trajectory_msgs::JointTrajectoryPoint {
+            positions: positions.to_vec(),
+            ..Default::default()
+        };
+        trajectory_msgs::JointTrajectory {
+            joint_names: names.iter().map(|name| (*name).to_owned()).collect(),
+            points: points.iter().map(point).collect(),
+            ..Default::default()
+        }
     }
 
     const ALPHABETICAL: [&str; 7] =

@@ -93,12 +93,7 @@ impl Node {
             Level::Warning => Log::WARN,
             Level::Error => Log::ERROR,
         };
-        let line = Log {
-            level: level.try_into().unwrap_or_default(),
-            msg: text.to_owned(),
-            name: self.name(),
-            ..Log::default()
-        };
+        let line = Log { level, msg: text.to_owned(), name: self.name(), ..Log::default() };
         // A line that cannot be sent is in the program's own log file all the same.
         let _ = self.log.send(line);
     }

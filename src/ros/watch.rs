@@ -74,7 +74,7 @@ impl Watch {
     }
 
     /// Names whoever else publishes on `topics`; they are given as they are before remappings.
-    pub(super) fn guarding(self, topics: Vec<String>) -> Self {
+    pub(super) fn guarding(self, topics: &[String]) -> Self {
         Self { guarded: topics.iter().map(|topic| resolved(topic)).collect(), ..self }
     }
 
