@@ -1,6 +1,6 @@
 //! The demo over the wire: the simulator as a process of its own with a master in it, and the real node beside it.
 
-use super::{Arguments, CONTINUES, LONGEST_TRIAL, person_and_setup, print_report, verdict};
+use super::{Arguments, LONGEST_TRIAL, person_and_setup, print_report, verdict};
 use crate::cli::anew::{self, Chosen};
 use crate::cli::console::{choose_strategy, conclude, show};
 use crate::cli::exit::Failure;
@@ -21,6 +21,9 @@ use std::time::{Duration, Instant};
 
 /// How long the simulator may take to come up on a loaded machine.
 const SIMULATOR_WITHIN: Duration = Duration::from_secs(30);
+/// How often the scripted operator goes on after a hold: a computer that has other things to do, too, holds the trial for late
+/// beats and messages again and again. At two acts a second this is a minute of a trial that does not go on.
+const CONTINUES: u32 = 120;
 /// How often its master is looked for meanwhile.
 const LOOK: Duration = Duration::from_millis(50);
 
