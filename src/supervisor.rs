@@ -145,6 +145,7 @@ impl Supervisor {
             Input::Joints(sample) => self.protection.see_joints(now, sample),
             Input::Robot(state) => self.see_robot(now, state),
             Input::Collision { side, active } => self.see_collision(now, *side, *active),
+            Input::Cuff { side, squeezed } => self.see_cuff(now, *side, *squeezed),
             Input::Body(pose) => self.see_body(now, pose),
             Input::Operator { command, origin } => self.obey(now, command, *origin),
             Input::Link(event) => self.see_link(now, event),
@@ -304,6 +305,14 @@ impl Supervisor {
                 now,
                 &format!("the robot felt a contact on its {side} arm; by itself it would go on after two seconds"),
             );
+        }
+    }
+
+    fn see_cuff(&mut self, now: Stamp, side: Side, squeezed: bool) {
+        if self.protection.watchdogs_mut().cuff(side, squeezed) {
+            self.hold(now, &format!("the {side} arm's cuff is squeezed: a hand moves the arm; let go, then continue"));
+            // Where the hand leaves the arm is not where the motion was: it must not be taken up there.
+            self.drive.drop_motion();
         }
     }
 

@@ -205,6 +205,19 @@ fn a_master_that_is_lost_holds_the_trial_until_the_operator_continues() {
 }
 
 #[test]
+fn s_42_a_squeezed_cuff_hands_the_arm_over_and_the_arm_is_not_called_back() {
+    let mut bench = Bench::moving();
+    bench.trial.feed(&Input::Cuff { side: Side::Left, squeezed: true });
+    assert_eq!(setpoints(&bench.pass(1.0)), 0, "once the hand lets go, an old setpoint would pull the arm back");
+    assert_eq!(bench.phase(), TrialPhase::Holding);
+    assert!(bench.refuse(Command::Continue).contains("cuff"), "the hand is still there");
+    bench.trial.feed(&Input::Cuff { side: Side::Left, squeezed: false });
+    assert_eq!(setpoints(&bench.pass(1.0)), 0, "letting go is no reason to move");
+    bench.accept(Command::Continue);
+    assert!(!holds_still(&bench.pass(1.0)));
+}
+
+#[test]
 fn a_setpoint_that_a_guard_refused_holds_the_trial_with_the_guards_words() {
     let mut bench = Bench::moving();
     bench.trial.feed(&Input::SetpointRefused { side: Side::Left, reason: "elbow beyond its limit".into() });

@@ -153,7 +153,8 @@ impl CsvFiles {
             Input::Planned { ways: Ok(_), number } => self.events.write_record([time, "planned", &number.to_string()]),
             Input::Planned { ways: Err(reason), .. } => self.events.write_record([time, "not planned", reason]),
             Input::Link(event) => self.events.write_record([time, "link", &format!("{event:?}")]),
-            Input::Tick | Input::Collision { .. } | Input::Body(_) | Input::Fitted { .. } => Ok(()),
+            Input::Cuff { side, squeezed: true } => self.events.write_record([time, "cuff", side.name()]),
+            Input::Tick | Input::Cuff { .. } | Input::Collision { .. } | Input::Body(_) | Input::Fitted { .. } => Ok(()),
         }
     }
 

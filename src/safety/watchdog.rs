@@ -45,6 +45,8 @@ pub enum Watch {
     Tick,
     /// The robot's own contact detection.
     Collision(Side),
+    /// The cuff at an arm's wrist, by which a hand takes the arm over.
+    Cuff(Side),
     /// The robot's motors, switched by somebody else.
     Enable,
     /// Another node that publishes where only valet may.
@@ -90,6 +92,7 @@ pub struct Watchdogs {
     console: Freshness,
     last_tick: Option<Stamp>,
     collision: PerSide<bool>,
+    cuff: PerSide<bool>,
     /// Topic and node of each publisher that ought not to be there.
     foreign: BTreeSet<(String, String)>,
     master_is_lost: bool,
@@ -119,6 +122,7 @@ impl Watchdogs {
             console: stream(0.5, 100.0, settings.console),
             last_tick: None,
             collision: PerSide::default(),
+            cuff: PerSide::default(),
             foreign: BTreeSet::new(),
             master_is_lost: false,
             latched: BTreeMap::new(),
@@ -214,6 +218,16 @@ impl Watchdogs {
         rises
     }
 
+    /// The cuff at a wrist. True where it was squeezed just now: from then on the arm follows a hand and no command.
+    pub fn cuff(&mut self, side: Side, squeezed: bool) -> bool {
+        let before = std::mem::replace(self.cuff.get_mut(side), squeezed);
+        let rises = squeezed && !before;
+        if rises {
+            self.latch(Watch::Cuff(side), cuff_words(side));
+        }
+        rises
+    }
+
     /// Another node publishes where only valet may.
     pub fn foreign_publisher(&mut self, topic: &str, node: &str) {
         self.foreign.insert((topic.to_owned(), node.to_owned()));
@@ -280,6 +294,9 @@ impl Watchdogs {
             found.push((Watch::Joints(side), self.judge_joints(now, side)));
             if *self.collision.get(side) {
                 found.push((Watch::Collision(side), Verdict::new(Reaction::Hold, collision_words(side))));
+            }
+            if *self.cuff.get(side) {
+                found.push((Watch::Cuff(side), Verdict::new(Reaction::Hold, cuff_words(side))));
             }
         }
         if let Some((topic, node)) = self.foreign.first() {
@@ -394,6 +411,10 @@ fn foreign_words(topic: &str, node: &str) -> String {
 
 fn collision_words(side: Side) -> String {
     format!("the robot felt a contact on its {side} arm; by itself it would go on after two seconds")
+}
+
+fn cuff_words(side: Side) -> String {
+    format!("the {side} arm's cuff is squeezed, the arm follows a hand: let go of it, then continue")
 }
 
 /// A hold where a stream is not fresh.

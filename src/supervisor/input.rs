@@ -31,6 +31,13 @@ pub enum Input {
         /// True while the robot pauses for an impact or a squish.
         active: bool,
     },
+    /// The cuff at an arm's wrist (`/robot/digital_io/{s}_lower_cuff/state`), where it changed.
+    Cuff {
+        /// Which arm.
+        side: Side,
+        /// True while a hand squeezes it: the arm follows the hand and no command.
+        squeezed: bool,
+    },
     /// The person's pose, from whichever source.
     Body(BodyPose),
     /// Somebody asks for something.

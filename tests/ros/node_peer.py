@@ -11,7 +11,7 @@ peer.make_messages()
 
 import rospy  # noqa: E402
 import rostest  # noqa: E402
-from baxter_core_msgs.msg import AssemblyState, EndpointState, JointCommand  # noqa: E402
+from baxter_core_msgs.msg import AssemblyState, DigitalIOState, EndpointState, JointCommand  # noqa: E402
 from geometry_msgs.msg import TransformStamped  # noqa: E402
 from sensor_msgs.msg import Image, JointState  # noqa: E402
 from std_msgs.msg import Bool, Empty, Float64  # noqa: E402
@@ -41,10 +41,14 @@ class Robot:
         self.enabled, self.stopped = False, False
         self.positions = {side: list(UNTUCKED[side]) for side in SIDES}
         self.commands, self.stops, self.told = [], 0, {}
-        self.force, self.shift, self.missing, self.reverse = 0.0, 0.0, None, False
+        self.force, self.shift, self.missing, self.reverse, self.squeezed = 0.0, 0.0, None, False, None
         self.state = rospy.Publisher("/robot/state", AssemblyState, queue_size=2)
         self.joints = rospy.Publisher("/robot/joint_states", JointState, queue_size=2)
         self.transforms = rospy.Publisher("/tf", TFMessage, queue_size=2)
+        self.cuffs = {
+            side: rospy.Publisher("/robot/digital_io/%s_lower_cuff/state" % side, DigitalIOState, queue_size=2)
+            for side in SIDES
+        }
         self.ends = {
             side: rospy.Publisher("/robot/limb/%s/endpoint_state" % side, EndpointState, queue_size=2) for side in SIDES
         }
@@ -108,6 +112,7 @@ class Robot:
             # A reading that never changes would be a frozen sensor.
             end.wrench.force.x = self.force + 0.1 * math.sin(beat)
             self.ends[side].publish(end)
+            self.cuffs[side].publish(DigitalIOState(state=int(self.squeezed == side), isInputOnly=True))
         if beat % 3 == 0:
             self.transforms.publish(TFMessage([self.transform(now, *pair) for pair in PERSON.items()]))
 
@@ -223,6 +228,13 @@ class NodeUnderTest(unittest.TestCase):
             self.holds_and_says(*words)
             self.robot.shift = 0.0
             self.moves()
+
+    def test_4_a_squeezed_cuff_holds_until_the_hand_has_let_go(self):
+        self.addCleanup(setattr, self.robot, "squeezed", None)
+        self.robot.squeezed = "left"
+        self.holds_and_says("left arm's cuff is squeezed")
+        self.robot.squeezed = None
+        self.moves()
 
     def test_5_another_order_of_joints_is_read_and_a_missing_one_holds(self):
         self.addCleanup(setattr, self.robot, "missing", None)

@@ -7,6 +7,7 @@ use crate::ros::message::{baxter_core_msgs, sensor_msgs, tf2_msgs};
 use crate::ros::monitor::now;
 use crate::ros::subscription::{Decoded, Sink, Subscription, TopicNeed};
 use crate::supervisor::Input;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Messages that may wait for their callback at 100 Hz: 80 ms, beyond which they are stale anyway.
@@ -17,6 +18,8 @@ const HUNDRED_HERTZ: (f64, f64) = (80.0, 125.0);
 const JOINT_HERTZ: (f64, f64) = (40.0, 400.0);
 /// A depth camera's beat.
 const THIRTY_HERTZ: (f64, f64) = (20.0, 35.0);
+/// `state` of a `DigitalIOState` whose button is pressed.
+const PRESSED: i8 = 1;
 /// Anything goes.
 const ANY_RATE: (f64, f64) = (0.0, f64::INFINITY);
 
@@ -65,9 +68,19 @@ fn need(topic: &'static str, queue: usize, expected_hertz: (f64, f64), required:
 
 pub(super) fn subscribe(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosError> {
     let mut all = Vec::new();
-    for (side, endpoint, collision) in [
-        (Side::Left, "/robot/limb/left/endpoint_state", "/robot/limb/left/collision_detection_state"),
-        (Side::Right, "/robot/limb/right/endpoint_state", "/robot/limb/right/collision_detection_state"),
+    for (side, endpoint, collision, cuff) in [
+        (
+            Side::Left,
+            "/robot/limb/left/endpoint_state",
+            "/robot/limb/left/collision_detection_state",
+            "/robot/digital_io/left_lower_cuff/state",
+        ),
+        (
+            Side::Right,
+            "/robot/limb/right/endpoint_state",
+            "/robot/limb/right/collision_detection_state",
+            "/robot/digital_io/right_lower_cuff/state",
+        ),
     ] {
         let decode = move |message| Decoded::Input(Input::Endpoint(decode::endpoint(side, &message)));
         all.push(Subscription::new::<baxter_core_msgs::EndpointState>(
@@ -79,6 +92,14 @@ pub(super) fn subscribe(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscrip
             Decoded::Input(Input::Collision { side, active: message.collision_state })
         };
         all.push(Subscription::new(need(collision, QUEUE, ANY_RATE, false), sink, decode)?);
+        // The robot repeats the state at 100 Hz: only what changes is news.
+        let squeezed = AtomicBool::new(false);
+        let decode = move |message: baxter_core_msgs::DigitalIOState| {
+            let now = message.state == PRESSED;
+            let changed = squeezed.swap(now, Ordering::Relaxed) != now;
+            if changed { Decoded::Input(Input::Cuff { side, squeezed: now }) } else { Decoded::Kept }
+        };
+        all.push(Subscription::new(need(cuff, QUEUE, ANY_RATE, false), sink, decode)?);
     }
     let decode = |message: sensor_msgs::JointState| {
         decode::joints(&message).map_or(Decoded::Kept, |sample| Decoded::Input(Input::Joints(sample)))

@@ -176,6 +176,22 @@ fn messages_that_carry_only_the_fingers_are_not_joints_of_the_arm() {
 }
 
 #[test]
+fn s_42_a_squeezed_cuff_holds_until_it_is_let_go_and_the_operator_acts() {
+    let mut watchdogs = Watchdogs::new(WatchSettings::default());
+    watchdogs.require_only(&[]);
+    assert!(!watchdogs.cuff(Side::Left, false));
+    assert!(watchdogs.cuff(Side::Left, true));
+    assert!(!watchdogs.cuff(Side::Left, true), "a squeeze is told once");
+    watchdogs.acknowledge();
+    assert_eq!(watchdogs.judge(at(10)).reaction, Hold, "whoever continues before the hand has gone holds again");
+    watchdogs.cuff(Side::Left, false);
+    let verdict = watchdogs.judge(at(20));
+    assert!(verdict.reaction == Hold && verdict.cause.contains("left arm's cuff"), "{verdict:?}");
+    watchdogs.acknowledge();
+    assert_eq!(watchdogs.judge(at(30)).reaction, Clear);
+}
+
+#[test]
 fn s_29_the_rising_edge_of_the_robots_own_contact_is_latched_beyond_its_two_seconds() {
     let mut watchdogs = Watchdogs::new(WatchSettings::default());
     assert!(watchdogs.collision(Side::Right, true));
