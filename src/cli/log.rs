@@ -63,7 +63,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();
-        let log = ProgramLog::start(&file.join("logs"));
-        assert!(log._writer.is_none());
+        let ProgramLog { _writer: writer } = ProgramLog::start(&file.join("logs"));
+        assert!(writer.is_none());
     }
 }

@@ -3,7 +3,6 @@
 //! Solves (J Jᵀ + λ 1) y = e over the free joints and returns Jᵀ y. The matrix is symmetric and positive definite for λ > 0, so
 //! a Cholesky factorisation without roots and without pivoting is stable.
 #![expect(clippy::indexing_slicing, reason = "all indices run over the constant sizes of the arrays")]
-#![expect(clippy::needless_range_loop, reason = "triangular loops are read by their indices")]
 
 use super::JointVector;
 use super::chain::{JOINTS, Jacobian};

@@ -39,6 +39,7 @@ impl SeedTable {
             let share = JointVector::from_fn(|_, _| random.random_range(SHARE));
             limits.lower + share.component_mul(&span)
         });
+        #[expect(clippy::large_stack_arrays, reason = "the table of a model is made once and moved into it")]
         let mut coordinates = [[0.0; TABLE_SIZE]; 7];
         for (index, posture) in postures.iter().enumerate() {
             for (row, value) in coordinates.iter_mut().zip(coordinates_of(&chain.tip_pose(posture))) {

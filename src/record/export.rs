@@ -154,7 +154,9 @@ impl CsvFiles {
             Input::Planned { ways: Err(reason), .. } => self.events.write_record([time, "not planned", reason]),
             Input::Link(event) => self.events.write_record([time, "link", &format!("{event:?}")]),
             Input::Cuff { side, squeezed: true } => self.events.write_record([time, "cuff", side.name()]),
-            Input::Tick | Input::Cuff { .. } | Input::Collision { .. } | Input::Body(_) | Input::Fitted { .. } => Ok(()),
+            Input::Tick | Input::Cuff { .. } | Input::Collision { .. } | Input::Body(_) | Input::Fitted { .. } => {
+                Ok(())
+            }
         }
     }
 

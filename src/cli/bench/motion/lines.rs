@@ -39,6 +39,7 @@ const FULL_SPEED: f64 = 1.15;
 const STRIDE: usize = 20;
 
 /// What came of the lines.
+#[expect(clippy::struct_field_names, reason = "the fields are the keys of the printed object")]
 #[derive(Debug, Default, Serialize)]
 pub(in crate::cli) struct Lines {
     pub(super) lines: usize,
