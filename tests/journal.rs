@@ -185,6 +185,9 @@ fn an_encrypted_journal_is_read_with_its_key_alone_and_a_cut_one_as_far_as_it_go
     let reading = read(&right, |_, _| {}).unwrap();
     assert!(reading.steps * 10 > all.len() as u64 * 6, "{} of {}", reading.steps, all.len());
     assert!(reading.problems.iter().any(|problem| problem.what.contains("encrypted file is cut")), "{reading:?}");
+    std::fs::write(&closed, &bytes[..9_000]).unwrap();
+    let error = read(&right, |_, _| {}).unwrap_err().to_string();
+    assert!(error.contains("cut or damaged at its beginning"), "{error}");
 }
 
 /// What a recorder says by itself, gathered.

@@ -107,6 +107,20 @@ fn fault(kind: FaultKind, from_seconds: f64) -> Fault {
 }
 
 #[test]
+fn an_iteration_that_runs_shows_the_resistance_that_it_has_met() {
+    let mut bench = Bench::moving();
+    let found = |bench: &Bench| bench.trial.snapshot().sides.right.force.detections.len();
+    while found(&bench) == 0 && bench.phase() != TrialPhase::Ended {
+        bench.pass(0.1);
+    }
+    let right = bench.trial.snapshot().sides.right;
+    let running = right.iterations.last().unwrap();
+    let met: f64 = right.force.detections.iter().map(|detection| detection.magnitude).sum();
+    assert!(!running.finished && running.resistances > 0 && running.duration > 0.0, "{running:?}");
+    assert!(met > 0.0 && (running.energy - met).abs() < 1e-9, "{running:?}, {met}");
+}
+
+#[test]
 fn after_a_stop_no_motion_until_reset_enable_and_start_each_a_separate_act() {
     let mut bench = Bench::moving();
     bench.accept(Command::Stop);

@@ -20,6 +20,10 @@ impl ProgramLog {
     /// Begins the log in a folder. A folder that cannot be written to leaves the program without its log: the trial's own
     /// record does not depend on it.
     pub(super) fn start(folder: &Path) -> Self {
+        // The builder complains on the terminal about a folder that does not exist.
+        if std::fs::create_dir_all(folder).is_err() {
+            return Self { _writer: None };
+        }
         let files = Builder::new().rotation(Rotation::DAILY).filename_prefix("valet").filename_suffix("log");
         let Ok(files) = files.max_log_files(KEPT).build(folder) else { return Self { _writer: None } };
         let (lines, writer) = tracing_appender::non_blocking(files);
@@ -36,8 +40,6 @@ pub(super) fn tell(effect: &Effect) {
         Effect::Log { level: Level::Error, text } => tracing::error!("{text}"),
         Effect::Log { level: Level::Warning, text } => tracing::warn!("{text}"),
         Effect::Log { text, .. } => tracing::info!("{text}"),
-        Effect::Stopped { cause, .. } => tracing::error!("emergency stop: {cause}"),
-        Effect::TrialEnded { outcome, reason } => tracing::info!("the trial is {}: {reason}", outcome.words()),
         _ => {}
     }
 }

@@ -3,8 +3,9 @@
 use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
-use crate::config::{Key, LoadedProfile, Places, Profile, profile_names, read_secret, write_whole};
+use crate::config::{Key, LoadedProfile, Places, Profile, Settings, profile_names, read_secret, write_whole};
 use crate::record::{JournalFile, close_journal, learned_in, read_header};
+use crate::snapshot::Watermark;
 use clap::Subcommand;
 use serde::Serialize;
 use std::fs;
@@ -98,6 +99,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::List => profile_names(&places).into_iter().try_for_each(|name| output.line(name)),
         Action::Check { profile, key } => {
             let found = find(profile, key)?;
+            // A setting of this person counts only together with those below it.
+            let settings = Settings::find(None, &places).map_err(Failure::configuration)?;
+            settings.setup_for(&found, 0, Watermark::Live).map_err(Failure::configuration)?;
             output.line(format!("{}: everything can be used (hash {})", found.path.display(), found.short_hash()))
         }
         Action::Show { profile, key } => show(&mut output, &find(profile, key)?),

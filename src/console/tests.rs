@@ -296,6 +296,10 @@ fn after_the_reset_of_a_latched_stop_enable_and_then_start_are_offered() {
     assert!(screen.contains("STOP RESET") && screen.contains("Enable and Start are left"), "{screen}");
     reset.robot.state.as_mut().unwrap().enabled = true;
     assert_eq!(press(&mut app, &reset, &["p", "y", "enter"]), [], "a hold is not left before Start");
+    press(&mut app, &reset, &["S"]);
+    let screen = text_of(&drawn(&reset, &app.view, COLOUR, (120, 40)));
+    assert!(screen.contains("nothing yet: the trial holds"), "{screen}");
+    press(&mut app, &reset, &["esc"]);
     assert_eq!(press(&mut app, &reset, &["S", "y", "enter"]), [Reaction::Send(Command::Start)]);
 }
 

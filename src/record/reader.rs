@@ -48,7 +48,10 @@ pub fn read(journal: impl Into<JournalFile>, mut visit: impl FnMut(&Header, Step
     let path = journal.path();
     let Contents { bytes, damage } = journal.contents()?;
     if !bytes.starts_with(MAGIC) {
-        return Err(JournalError::foreign(path, kind_of(&bytes)));
+        return Err(match damage {
+            Some(reason) => JournalError::foreign(path, format!("it is cut or damaged at its beginning: {reason}")),
+            None => JournalError::foreign(path, kind_of(&bytes)),
+        });
     }
     let mut scan = Scan::default();
     let mut offset = MAGIC.len();

@@ -158,6 +158,11 @@ impl Supervisor {
             waypoint: None,
             log_line,
         });
+        let iterations = self.view.sides.get_mut(side).iterations.make_mut();
+        if let Some(running) = iterations.last_mut().filter(|iteration| !iteration.finished) {
+            running.energy += contact.resistance.norm();
+            running.resistances += 1;
+        }
         self.mark(now, Some(side), TimelineKind::Resistance);
     }
 
@@ -307,6 +312,12 @@ impl Supervisor {
         shown.path.updated = Shared::new(trial.strategy(arm).path().to_vec());
         if trial.iteration() > 0 {
             shown.progress = self.gripper(now, arm).map(|place| trial.progress_at(&place));
+        }
+        let runs = shown.iterations.last().is_some_and(|iteration| !iteration.finished);
+        if let Some(began) = self.pass_began.filter(|_| runs)
+            && let Some(running) = shown.iterations.make_mut().last_mut()
+        {
+            running.duration = now.since(began).as_secs_f64();
         }
     }
 

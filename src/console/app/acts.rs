@@ -161,6 +161,8 @@ fn what_moves(command: &Command, snapshot: &Snapshot) -> String {
             let first = trial.first_arm.map_or_else(String::new, |arm| format!("; then the {arm} arm first"));
             format!("both grippers: take the start posture, back from the person{first}{strategy}")
         }
+        // After a stop: the latch opens, and the trial holds.
+        Command::Start => "nothing yet: the trial holds until it is continued, withdrawn or given up".into(),
         Command::Enable => "both arms: the motors switch on and hold them where they are".into(),
         Command::Disable => "both arms: the motors switch off, the arms may sink".into(),
         Command::Withdraw => {

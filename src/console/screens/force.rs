@@ -58,10 +58,10 @@ fn heading<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
     let broken =
         if force.window.broken.is_empty() { String::new() } else { format!(", broken by {}", force.window.broken) };
     let tare = if force.tare.is_some() { "" } else { " · not tared" };
+    // What must not be cut off stands first: whether the force lives at all.
     let mut spans = vec![
         span(look, role, format!(" {side} gripper ")),
-        span(look, Role::Muted, format!(" last {} · raw", seconds(scene.view.span))),
-        span(look, Role::Text, format!(" | {} {window}{broken}{tare} ", force.window.detector)),
+        span(look, Role::Muted, format!(" raw, last {} ", seconds(scene.view.span))),
     ];
     if force.freshness.is_fresh(live.now) {
         spans.push(span(look, Role::Muted, format!("· age {}", age(&force.freshness, live.now, "-"))));
@@ -70,6 +70,7 @@ fn heading<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
         spans.push(span(look, Role::Stale, text));
     }
     spans.push(selected_mark(scene, side, force));
+    spans.push(span(look, Role::Text, format!(" | {} {window}{broken}{tare}", force.window.detector)));
     Line::from(spans)
 }
 

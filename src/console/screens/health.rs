@@ -93,7 +93,7 @@ fn topic_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
     let heading = format!("Topics: {} of {}, worst first", topics.len(), live.topics.len());
     let mut lines = vec![title(look, heading)];
     let columns = format!(
-        "{:<8}{:<44}{:<4}{:>6} {:>8} {:>7} {:>7} {:>7} {:>5}",
+        "{:<8}{:<44}{:<5}{:>6} {:>8} {:>7} {:>7} {:>7} {:>5}",
         "state", "topic", "need", "rate/s", "expected", "age", "gap", "jitter", "drops"
     );
     lines.push(line(look, Role::Muted, if width >= 104 { format!("{columns} publisher") } else { columns }));
@@ -114,7 +114,7 @@ fn topic_line<'a>(scene: &Scene<'a>, topic: &TopicHealth) -> Line<'a> {
     let needed = if topic.required { "yes" } else { "no" };
     Line::from(vec![
         span(look, role, format!("{symbol} {word:<6}")),
-        span(look, Role::Text, format!("{:<44}{needed:<4}", topic.name)),
+        span(look, Role::Text, format!("{:<44}{needed:<5}", topic.name)),
         span(look, Role::Text, format!("{:>6} {:>8} ", number(format!("{:.1}", topic.rate)), expected(topic))),
         span(look, role, format!("{:>7}", age(&topic.freshness, now, none))),
         span(look, Role::Text, format!(" {:>7} {:>7}", number(seconds(topic.gap)), number(seconds(topic.jitter)))),
