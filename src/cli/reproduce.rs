@@ -42,6 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         format!("valet reproduce {}", arguments.what),
         &format!("Seed {}, valet {}.", arguments.seed, env!("CARGO_PKG_VERSION")),
     );
+    let file = arguments.out.as_ref().map(|folder| folder.join(format!("{}.html", arguments.what)));
     for experiment in chosen {
         progress.set_message(experiment.name);
         let findings = (experiment.run)(arguments.seed).map_err(Failure::fault)?;
@@ -50,15 +51,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             write_files(folder, &findings)?;
         }
         write_section(&mut page, experiment, &findings)?;
+        if let Some(file) = &file {
+            // Whoever ends a long run has the page of what is done.
+            page.save(file).map_err(Failure::fault)?;
+        }
         progress.inc(1);
     }
     progress.finish_and_clear();
-    if let Some(folder) = &arguments.out {
-        let file = folder.join(format!("{}.html", arguments.what));
-        page.save(&file).map_err(Failure::fault)?;
-        output.line(format!("Written: {}", file.display()))?;
-    }
-    Ok(())
+    file.map_or(Ok(()), |file| output.line(format!("Written: {}", file.display())))
 }
 
 fn progress_bar(steps: usize) -> ProgressBar {
