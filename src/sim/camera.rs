@@ -78,6 +78,7 @@ impl Scene {
         let mut labels = vec![NONE; width * height];
         for solid in self.solids() {
             let window = solid.shape.window(camera, width, height);
+            let shape = solid.shape.prepare();
             for row in window.rows.0..window.rows.1 {
                 let start = row * width;
                 let span = start + window.columns.0..start + window.columns.1.max(window.columns.0);
@@ -87,7 +88,7 @@ impl Scene {
                 let y = (row as f64 - camera.cy) / camera.fy;
                 for ((column, depth), label) in (window.columns.0..).zip(depths).zip(labels) {
                     let ray = Vector::new((column as f64 - camera.cx) / camera.fx, y, 1.0);
-                    let Some(hit) = solid.shape.hit(&ray) else { continue };
+                    let Some(hit) = shape.hit(&ray) else { continue };
                     let hit = hit + solid.fold(&(ray * hit));
                     if hit < *depth {
                         *depth = hit;
@@ -107,8 +108,8 @@ impl Scene {
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range is checked first")]
 fn to_millimetres(metres: f64) -> u16 {
-    let millimetres = (metres * 1000.0).round();
-    if millimetres > 0.0 && millimetres < 10_000.0 { millimetres as u16 } else { 0 }
+    let millimetres = metres * 1000.0 + 0.5;
+    if (1.0..10_000.0).contains(&millimetres) { millimetres as u16 } else { 0 }
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The forest that valet brings along: trained on simulated people of many sizes, shapes, clothes and postures, so that a new
 //! person needs neither coloured clothes nor training.
 //!
-//! It was made with the training of `valet train --generic`; `docs/results.md` says with which numbers and how well it does.
+//! An earlier state of the training that `valet train --generic` runs made it, so that command makes a like forest, not the
+//! same bytes; `docs/results.md` says with which numbers it was made and how well it does.
 
 use super::file::FileError;
 use super::tree::Forest;

@@ -5,6 +5,7 @@
 
 mod batch;
 mod candidate;
+mod entropy;
 mod set;
 
 pub use set::{Example, TrainingSet};

@@ -22,7 +22,24 @@ pub fn leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f32, int
     plain_leaves(tree, image, rest, ratio, into);
 }
 
-/// The same without vector instructions; adds to the list.
+/// Work that the compiler may turn into vector instructions. `run` and all that it is to profit for must be inlined always:
+/// only then is it compiled for the instructions of the place that it is inlined into.
+pub(super) trait Work {
+    /// What comes out.
+    type Outcome;
+    /// Does it.
+    fn run(self) -> Self::Outcome;
+}
+
+/// Runs work, compiled for vector instructions where the machine has them.
+pub(super) fn with_vector_instructions<W: Work>(work: W) -> W::Outcome {
+    #[cfg(target_arch = "x86_64")]
+    return vector::run(work);
+    #[cfg(not(target_arch = "x86_64"))]
+    work.run()
+}
+
+/// [`leaves`] without vector instructions; adds to the list.
 pub fn plain_leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f32, into: &mut Vec<u32>) {
     for group in pixels.chunks(SIDE_BY_SIDE) {
         let mut next = [0_u32; SIDE_BY_SIDE];

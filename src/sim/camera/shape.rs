@@ -35,12 +35,18 @@ impl Shape {
         Self::Block { centre, to_unit: to_unit(axes, &half), reach: half.norm() }
     }
 
-    /// The depth at which a ray first meets the surface.
-    pub(super) fn hit(&self, ray: &Vector) -> Option<f64> {
+    /// The shape with everything worked out that is the same for all rays.
+    pub(super) fn prepare(&self) -> Prepared {
         match self {
-            Self::Cone { start, end, start_radius, end_radius } => cone(ray, start, end, *start_radius, *end_radius),
-            Self::Ellipsoid { centre, to_unit, .. } => sphere(&(to_unit * ray), &(to_unit * centre.coords), 1.0),
-            Self::Block { centre, to_unit, .. } => cube(&(to_unit * ray), &(to_unit * centre.coords)),
+            Self::Cone { start, end, start_radius, end_radius } => {
+                Prepared::Cone(SweptSphere::new(start, end, *start_radius, *end_radius))
+            }
+            Self::Ellipsoid { centre, to_unit, .. } => {
+                Prepared::Ellipsoid { to_unit: *to_unit, sphere: Sphere::new(to_unit * centre.coords, 1.0) }
+            }
+            Self::Block { centre, to_unit, .. } => {
+                Prepared::Block { to_unit: *to_unit, middle: to_unit * centre.coords }
+            }
         }
     }
 
@@ -90,43 +96,96 @@ fn clamp(value: f64, limit: usize) -> usize {
     value.clamp(0.0, limit as f64) as usize
 }
 
-/// The nearer solution of |t ray - centre| = radius, in front of the camera.
-fn sphere(ray: &Vector, centre: &Vector, radius: f64) -> Option<f64> {
-    let (square, half) = (ray.norm_squared(), ray.dot(centre));
-    let root = half * half - square * (centre.norm_squared() - radius * radius);
-    (root >= 0.0).then(|| (half - root.sqrt()) / square).filter(|depth| *depth > 0.0)
+/// A shape that is ready for many rays.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Prepared {
+    Cone(SweptSphere),
+    Ellipsoid { to_unit: Matrix3<f64>, sphere: Sphere },
+    Block { to_unit: Matrix3<f64>, middle: Vector },
 }
 
-/// The first meeting with a sphere swept from `start` to `end`: the cone between, else one of the end spheres.
-///
-/// With q from the start to the point, the spheres through it solve s^2 L - 2 s (q.axis - r slope) + q^2 - r^2 = 0; on the
-/// surface both solutions fall together, which gives a quadratic in the depth.
-fn cone(ray: &Vector, start: &Point, end: &Point, start_radius: f64, end_radius: f64) -> Option<f64> {
-    let axis = end - start;
-    let slope = start_radius - end_radius;
-    let length = axis.norm_squared() - slope * slope;
-    let (forward, origin) = (ray.dot(&axis), -start.coords.dot(&axis) - slope * start_radius);
-    let square = forward * forward - length * ray.norm_squared();
-    let half = forward * origin + length * ray.dot(&start.coords);
-    let rest = origin * origin - length * (start.coords.norm_squared() - start_radius * start_radius);
-    let root = half * half - square * rest;
-    if length > 1e-12 && root >= 0.0 && square < -1e-15 {
-        let depth = (-half + root.sqrt()) / square;
-        // The cone's side is met where the touching sphere's centre lies between both ends.
-        let share = (forward * depth + origin) / length;
-        if depth > 0.0 && (0.0..=1.0).contains(&share) {
-            return Some(depth);
+/// A sphere; `rest` is the square of its centre's distance from the camera less that of its radius.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sphere {
+    centre: Vector,
+    rest: f64,
+}
+
+/// A sphere swept along an axis, with what its quadratic is made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SweptSphere {
+    axis: Vector,
+    length: f64,
+    origin: f64,
+    rest: f64,
+    ends: [Sphere; 2],
+}
+
+impl Prepared {
+    /// The depth at which a ray first meets the surface.
+    pub(super) fn hit(&self, ray: &Vector) -> Option<f64> {
+        match self {
+            Self::Cone(cone) => cone.hit(ray),
+            Self::Ellipsoid { to_unit, sphere } => sphere.hit(&(to_unit * ray)),
+            Self::Block { to_unit, middle } => cube(&(to_unit * ray), middle),
         }
     }
-    let ends = [sphere(ray, &start.coords, start_radius), sphere(ray, &end.coords, end_radius)];
-    ends.into_iter().flatten().reduce(f64::min)
+}
+
+impl Sphere {
+    fn new(centre: Vector, radius: f64) -> Self {
+        Self { centre, rest: centre.norm_squared() - radius * radius }
+    }
+
+    /// The nearer solution of |t ray - centre| = radius, in front of the camera.
+    fn hit(&self, ray: &Vector) -> Option<f64> {
+        let (square, half) = (ray.norm_squared(), ray.dot(&self.centre));
+        let root = half * half - square * self.rest;
+        (root >= 0.0).then(|| (half - root.sqrt()) / square).filter(|depth| *depth > 0.0)
+    }
+}
+
+impl SweptSphere {
+    fn new(start: &Point, end: &Point, start_radius: f64, end_radius: f64) -> Self {
+        let axis = end - start;
+        let slope = start_radius - end_radius;
+        let length = axis.norm_squared() - slope * slope;
+        let origin = -start.coords.dot(&axis) - slope * start_radius;
+        let ends = [Sphere::new(start.coords, start_radius), Sphere::new(end.coords, end_radius)];
+        Self { axis, length, origin, rest: origin * origin - length * ends[0].rest, ends }
+    }
+
+    /// The first meeting: with the cone between the ends, else with one of the end spheres.
+    ///
+    /// With q from the start to the point, the spheres through it solve s^2 L - 2 s (q.axis - r slope) + q^2 - r^2 = 0; on the
+    /// surface both solutions fall together, which gives a quadratic in the depth.
+    fn hit(&self, ray: &Vector) -> Option<f64> {
+        let forward = ray.dot(&self.axis);
+        let square = forward * forward - self.length * ray.norm_squared();
+        if self.length > 1e-12 && square < -1e-15 {
+            let half = forward * self.origin + self.length * ray.dot(&self.ends[0].centre);
+            let root = half * half - square * self.rest;
+            if root < 0.0 {
+                // The end spheres lie inside the endless cone, so they are missed too.
+                return None;
+            }
+            let depth = (-half + root.sqrt()) / square;
+            // The cone's side is met where the touching sphere's centre lies between both ends.
+            let share = (forward * depth + self.origin) / self.length;
+            if depth > 0.0 && (0.0..=1.0).contains(&share) {
+                return Some(depth);
+            }
+        }
+        self.ends.iter().filter_map(|end| end.hit(ray)).reduce(f64::min)
+    }
 }
 
 /// The first meeting with the cube from -1 to 1 about `centre` (slabs).
 fn cube(ray: &Vector, centre: &Vector) -> Option<f64> {
     let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
     for (direction, middle) in ray.iter().zip(centre.iter()) {
-        let (first, second) = ((middle - 1.0) / direction, (middle + 1.0) / direction);
+        let per_direction = 1.0 / direction;
+        let (first, second) = ((middle - 1.0) * per_direction, (middle + 1.0) * per_direction);
         enter = enter.max(first.min(second));
         leave = leave.min(first.max(second));
     }
@@ -141,10 +200,10 @@ mod tests {
     fn a_ray_meets_the_near_side_of_each_shape() {
         let ray = Vector::new(0.0, 0.0, 1.0);
         let ball = Shape::ellipsoid(Point::new(0.0, 0.0, 2.0), &Matrix3::identity(), Vector::new(0.3, 0.2, 0.5));
-        assert!((ball.hit(&ray).unwrap() - 1.5).abs() < 1e-12);
+        assert!((ball.prepare().hit(&ray).unwrap() - 1.5).abs() < 1e-12);
         let block = Shape::block(Point::new(0.05, 0.0, 2.0), &Matrix3::identity(), Vector::new(0.3, 0.2, 0.25));
-        assert!((block.hit(&ray).unwrap() - 1.75).abs() < 1e-12);
-        assert_eq!(block.hit(&Vector::new(0.5, 0.0, 1.0)), None);
+        assert!((block.prepare().hit(&ray).unwrap() - 1.75).abs() < 1e-12);
+        assert_eq!(block.prepare().hit(&Vector::new(0.5, 0.0, 1.0)), None);
     }
 
     #[test]
@@ -154,7 +213,7 @@ mod tests {
         let mut hits = 0;
         for step in 0..200 {
             let ray = Vector::new(f64::from(step) * 0.003 - 0.3, 0.02, 1.0);
-            if let Some(depth) = cone.hit(&ray) {
+            if let Some(depth) = cone.prepare().hit(&ray) {
                 let point = Point::from(ray * depth);
                 let foot = crate::geometry::closest_on_segment(&point, &start, &end);
                 assert!(((point - foot).norm() - 0.05).abs() < 1e-9);
@@ -170,7 +229,7 @@ mod tests {
         let cone = Shape::Cone { start, end, start_radius: 0.07, end_radius: 0.03 };
         for step in 0..400 {
             let ray = Vector::new(f64::from(step) * 0.0015 - 0.25, 0.0, 1.0);
-            let Some(depth) = cone.hit(&ray) else { continue };
+            let Some(depth) = cone.prepare().hit(&ray) else { continue };
             let point = ray * depth;
             let gap = (0..=10_000)
                 .map(|share| {

@@ -4,6 +4,9 @@
 
 use super::super::probe::{BACKGROUND, Offsets, ProbeImage};
 
+/// Features that are computed side by side: lists are padded to whole blocks of so many.
+pub(super) const BLOCK: usize = 16;
+
 /// Features whose numbers lie side by side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Features {
@@ -16,46 +19,60 @@ pub(super) struct Features {
 pub(super) struct Room {
     first: Vec<i32>,
     second: Vec<i32>,
-    /// The responses in millimetres.
+    /// The responses in millimetres, one for each feature and padding up to a whole block.
     pub(super) responses: Vec<i16>,
 }
 
 impl Features {
-    pub(super) fn push(&mut self, offsets: &Offsets) {
-        self.offsets.iter_mut().zip(offsets).for_each(|(list, offset)| list.push(*offset));
+    /// Features from their offsets; the last block is filled up with features that probe the pixel itself.
+    pub(super) fn new<'a>(of: impl Iterator<Item = &'a Offsets>) -> Self {
+        let mut features = Self::default();
+        for offsets in of {
+            features.offsets.iter_mut().zip(offsets).for_each(|(list, offset)| list.push(*offset));
+        }
+        for list in &mut features.offsets {
+            list.resize(list.len().next_multiple_of(BLOCK), 0.0);
+        }
+        features
     }
 
-    /// Fills the room with a pixel's responses, in the order in which the features were pushed.
+    /// Fills the room with a pixel's responses, in the order in which the features were given.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "to become vector instructions where the caller is compiled for them")]
     pub(super) fn respond(&self, image: &ProbeImage, place: (f32, f32), per_metre: f32, room: &mut Room) {
         let [u_x, u_y, v_x, v_y] = &self.offsets;
+        for list in [&mut room.first, &mut room.second] {
+            list.resize(u_x.len(), 0);
+        }
+        room.responses.resize(u_x.len(), 0);
         indices(image, place, per_metre, (u_x, u_y), &mut room.first);
         indices(image, place, per_metre, (v_x, v_y), &mut room.second);
         let values = image.values();
         let value = |index: i32| values.get(index.cast_unsigned() as usize).copied().unwrap_or(BACKGROUND);
-        room.responses.clear();
-        room.responses.extend(
-            room.first.iter().zip(&room.second).map(|(u, v)| value(*u).cast_signed() - value(*v).cast_signed()),
-        );
+        for ((response, u), v) in room.responses.iter_mut().zip(&room.first).zip(&room.second) {
+            *response = value(*u).cast_signed() - value(*v).cast_signed();
+        }
     }
 }
 
 /// Where probes stand in the image's values; outside is clamped to the border.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "to become vector instructions where the caller is compiled for them")]
 #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "clamped to the image and its border")]
 fn indices(
     image: &ProbeImage,
     (column, row): (f32, f32),
     per_metre: f32,
     (across, down): (&[f32], &[f32]),
-    into: &mut Vec<i32>,
+    into: &mut [i32],
 ) {
     let (last_column, last_row) = ((image.width() + 1) as f32, (image.height() + 1) as f32);
     let stride = image.stride() as i32;
-    into.clear();
-    into.extend(across.iter().zip(down).map(|(across, down)| {
+    for ((index, across), down) in into.iter_mut().zip(across).zip(down) {
         let column = (column + across * per_metre + 0.5 + 1.0).clamp(0.0, last_column);
         let row = (row + down * per_metre + 0.5 + 1.0).clamp(0.0, last_row);
-        row as i32 * stride + column as i32
-    }));
+        *index = row as i32 * stride + column as i32;
+    }
 }
 
 #[cfg(test)]
@@ -73,13 +90,12 @@ mod tests {
         ) {
             let mut image = ProbeImage::new(40, 30);
             (0..filled).for_each(|index| image.set(usize::from(index * 7 % 40), usize::from(index * 11 % 30), 500 + index));
-            let mut features = Features::default();
-            offsets.iter().for_each(|offsets| features.push(offsets));
+            let features = Features::new(offsets.iter());
             let (place, per_metre) = ((f32::from(column), f32::from(row)), 1000.0 / f32::from(depth));
             let mut room = Room::default();
             features.respond(&image, place, per_metre, &mut room);
             let one_by_one: Vec<i32> = offsets.iter().map(|offsets| image.response(place, per_metre, offsets)).collect();
-            prop_assert_eq!(room.responses.iter().map(|response| i32::from(*response)).collect::<Vec<_>>(), one_by_one);
+            prop_assert_eq!(room.responses.iter().take(offsets.len()).map(|response| i32::from(*response)).collect::<Vec<_>>(), one_by_one);
         }
     }
 }

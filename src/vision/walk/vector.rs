@@ -4,7 +4,7 @@
 //! leaves as the plain walk, which a test shows.
 #![expect(unsafe_code, reason = "gathers read through pointers; each is bounded where it is made")]
 
-use super::per_metre;
+use super::{Work, per_metre};
 use crate::vision::foreground::Pixel;
 use crate::vision::probe::ProbeImage;
 use crate::vision::tree::{LEAF, Node, OFFSET_UNIT, Tree};
@@ -37,6 +37,21 @@ pub(super) fn leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f
         into.extend(unsafe { walk(&tree.nodes, image, group, ratio) });
     }
     groups.len() * GROUP
+}
+
+/// Runs work compiled for AVX2 where the machine has it.
+pub(super) fn run<W: Work>(work: W) -> W::Outcome {
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: AVX2 is there.
+        unsafe { run_with_avx2(work) }
+    } else {
+        work.run()
+    }
+}
+
+#[target_feature(enable = "avx2")]
+fn run_with_avx2<W: Work>(work: W) -> W::Outcome {
+    work.run()
 }
 
 /// Places, scales and nodes of eight pixels.
