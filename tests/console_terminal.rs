@@ -85,6 +85,25 @@ impl Session {
         }
     }
 
+    /// Waits until the screen says that the robot has confirmed the stop. Only cells that change are written, so the words may
+    /// come in pieces: another size has the whole frame written anew.
+    fn wait_for_the_confirmed_stop(&mut self) {
+        const WORDS: &str = "confirmed by the robot";
+        let start = Instant::now();
+        for cols in [119, 118].into_iter().cycle() {
+            self.terminal.resize(PtySize { rows: 40, cols, pixel_width: 0, pixel_height: 0 }).unwrap();
+            let turn = Instant::now();
+            while turn.elapsed() < Duration::from_secs(1) && !self.seen.contains(WORDS) {
+                if let Ok(bytes) = self.output.recv_timeout(Duration::from_millis(100)) {
+                    self.seen.push_str(&String::from_utf8_lossy(&bytes));
+                }
+            }
+            if self.seen.contains(WORDS) || start.elapsed() > PATIENCE {
+                return self.wait_for(WORDS);
+            }
+        }
+    }
+
     fn signal(&self, name: &str) {
         let id = self.child.process_id().unwrap().to_string();
         assert!(Command::new("kill").args(["-s", name, &id]).status().unwrap().success());
@@ -122,7 +141,7 @@ fn it_draws_resizes_stops_at_the_key_and_gives_the_terminal_back() {
     session.terminal.resize(PtySize { rows: 40, cols: 120, pixel_width: 0, pixel_height: 0 }).unwrap();
     session.wait_for("(steps");
     session.press(" ");
-    session.wait_for("confirmed by the robot");
+    session.wait_for_the_confirmed_stop();
     session.press("qy\r");
     let (code, seen) = session.end();
     assert_restored(&seen);
@@ -162,7 +181,7 @@ fn sigusr1_reads_theme_and_keys_again_and_the_stop_key_stays() {
     session.terminal.resize(PtySize { rows: 40, cols: 119, pixel_width: 0, pixel_height: 0 }).unwrap();
     session.wait_for("again");
     session.press(" ");
-    session.wait_for("confirmed by the robot");
+    session.wait_for_the_confirmed_stop();
     session.press("qy\r");
     let (_, seen) = session.end();
     assert_restored(&seen);
