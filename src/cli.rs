@@ -16,6 +16,7 @@ mod doctor;
 mod export;
 mod fit;
 mod images;
+mod faults;
 mod key;
 mod keys;
 mod log;

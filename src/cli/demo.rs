@@ -4,6 +4,7 @@ mod wire;
 
 use super::console::choose_garment;
 use super::exit::Failure;
+use super::faults::FaultArguments;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::recording::{RecordArguments, sealed, warn};
@@ -50,6 +51,8 @@ pub(super) struct Arguments {
     /// For so many seconds the person moves both arms about first, as before a first trial: something to record.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub(super) exercise: f64,
+    #[command(flatten)]
+    pub(super) faults: FaultArguments,
     /// How many trials to run, with consecutive seeds.
     #[arg(long, default_value_t = 1)]
     pub(super) trials: u32,
@@ -81,6 +84,7 @@ impl Default for Arguments {
             garment: GarmentModel::default(),
             garment_name: None,
             exercise: 0.0,
+            faults: FaultArguments::default(),
             trials: 1,
             json: false,
             record: RecordArguments::default(),
@@ -122,6 +126,7 @@ fn run_one(arguments: &Arguments, seed: u64, output: &mut Output) -> Result<Tria
         garment: profile.garment(arguments.garment_name.as_deref()).cloned().unwrap_or_default(),
         backend: arguments.garment.into(),
         exercise_seconds: arguments.exercise,
+        faults: arguments.faults.plan(),
         ..WorldSetup::default()
     };
     output.line(format!("seed {seed}, strategy {strategy}"))?;

@@ -3,6 +3,7 @@
 //! Glues the simulated world to the wire; neither knows the other.
 
 use super::exit::Failure;
+use super::faults::FaultArguments;
 use super::output::Output;
 use super::sim_images;
 use crate::assembly::SwitchRequest;
@@ -14,7 +15,6 @@ use crate::ros::master::{EmbeddedMaster, USUAL_PORT, relay_log};
 use crate::ros::simulation::{DepthPicture, Senses, SimNode, SimulatedCamera, SimulatedRobot};
 use crate::ros::{Node, RosError, environment, leave};
 use crate::sim::camera;
-use crate::sim::faults::{Fault, FaultPlan};
 use crate::sim::person::{ArmPoints, SimulatedPerson};
 use crate::sim::world::{Backend, World, WorldSetup};
 use crate::snapshot::Level;
@@ -104,9 +104,6 @@ pub(super) struct Arguments {
     /// What the skeleton tracker publishes on /tf.
     #[arg(long, value_enum, default_value_t)]
     pub(super) skeleton: SkeletonTracker,
-    /// Something that goes wrong; may be repeated. As in `kind = "lost_pose", from_seconds = 20, duration_seconds = 5`.
-    #[arg(long, value_name = "FAULT", value_parser = fault)]
-    pub(super) fault: Vec<Fault>,
     /// The garment, by its name in the profile; the first one there where none is named.
     #[arg(long, value_name = "NAME")]
     pub(super) garment_name: Option<String>,
@@ -116,6 +113,8 @@ pub(super) struct Arguments {
     /// For so many seconds the person moves both arms about first, as before a first trial: something to record.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub(super) exercise: f64,
+    #[command(flatten)]
+    pub(super) faults: FaultArguments,
     /// Instead of a robot: write depth images of simulated people with their truth into this folder.
     #[arg(long, value_name = "DIR")]
     pub(super) images: Option<PathBuf>,
@@ -131,18 +130,9 @@ struct WorldOnTheWire {
     has_tracker: bool,
 }
 
-/// Reads what is to go wrong.
-fn fault(text: &str) -> Result<Fault, String> {
-    #[derive(serde::Deserialize)]
-    struct Typed {
-        fault: Fault,
-    }
-    let typed: Result<Typed, _> = toml::from_str(&format!("fault = {{ {text} }}"));
-    typed.map(|typed| typed.fault).map_err(|error| error.message().to_owned())
-}
-
-/// Where the person's arms are, for the camera, which takes its pictures in a thread of its own.
-type SeenArms = Arc<Mutex<PerSide<ArmPoints>>>;
+/// Where the person's arms are, for the camera, which takes its pictures in a thread of its own; `None` where a fault keeps
+/// it from taking any.
+type SeenArms = Arc<Mutex<Option<PerSide<ArmPoints>>>>;
 
 /// The camera on the robot's head.
 struct HeadCamera {
@@ -157,18 +147,18 @@ impl SimulatedCamera for HeadCamera {
         camera::robot_mount()
     }
 
-    fn picture(&mut self) -> DepthPicture {
-        let arms = *self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+    fn picture(&mut self) -> Option<DepthPicture> {
+        let arms = (*self.seen.lock().unwrap_or_else(PoisonError::into_inner))?;
         // Each picture has noise of its own.
         self.seed = self.seed.wrapping_add(1);
         let view = camera::view(&self.person, &arms, &self.intrinsics, &self.mount(), self.seed);
         let Intrinsics { fx, fy, cx, cy } = self.intrinsics;
         let pixels = |count: usize| u32::try_from(count).unwrap_or_default();
-        DepthPicture {
+        Some(DepthPicture {
             size: (pixels(view.depth.width()), pixels(view.depth.height())),
             millimetres: view.depth.millimetres().to_vec(),
             intrinsics: [fx, fy, cx, cy],
-        }
+        })
     }
 }
 
@@ -191,7 +181,8 @@ impl SimulatedRobot for WorldOnTheWire {
 
     fn step(&mut self, now: Stamp) -> Senses {
         let output = self.world.step(now);
-        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = self.world.person_arms();
+        let seen = (!self.world.camera_is_lost(now)).then(|| self.world.person_arms());
+        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = seen;
         Senses {
             endpoints: output.endpoints,
             joints: output.joints,
@@ -229,12 +220,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         garment: person.garment(arguments.garment_name.as_deref()).cloned().unwrap_or_default(),
         backend: arguments.garment.into(),
         arms_hide_joints: arguments.skeleton == SkeletonTracker::Occluded,
-        faults: FaultPlan { faults: arguments.fault.clone() },
         exercise_seconds: arguments.exercise,
+        faults: arguments.faults.plan(),
         ..WorldSetup::default()
     };
     let world = World::new(&setup).map_err(Failure::configuration)?;
-    let seen_arms: SeenArms = Arc::new(Mutex::new(world.person_arms()));
+    let seen_arms: SeenArms = Arc::new(Mutex::new(Some(world.person_arms())));
     let relay = master.as_ref().map(|_| relay_log()).transpose().map_err(ros_failure)?;
     let camera =
         HeadCamera { person: setup.person, seen: Arc::clone(&seen_arms), intrinsics: Intrinsics::default(), seed };

@@ -6,6 +6,7 @@ use super::operator::ScriptedOperator;
 use super::report::TrialResult;
 use crate::command::{Command, Origin};
 use crate::kinematics::{ModelError, RobotModel};
+use crate::sequencing::Trial;
 use crate::sim::world::{SimError, World, WorldSetup};
 use crate::snapshot::{Outcome, Snapshot};
 use crate::supervisor::{Effect, Input, LinkEvent, SettingsError, Setup, Supervisor};
@@ -64,6 +65,12 @@ impl VirtualTrial {
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
         self.supervisor.snapshot(self.now())
+    }
+
+    /// The trial that runs, with its strategies; `None` before it begins and after it has ended.
+    #[must_use]
+    pub const fn trial(&self) -> Option<&Trial> {
+        self.supervisor.trial()
     }
 
     /// The world, for reports and tests: the truth that no message carries.
@@ -138,8 +145,20 @@ impl VirtualTrial {
         &mut self,
         operator: &mut ScriptedOperator,
         at_most: Duration,
-        mut observe: impl FnMut(Stamp, &Input, &[Effect]),
+        observe: impl FnMut(Stamp, &Input, &[Effect]),
     ) -> TrialResult {
+        let ended = self.run_until(operator, at_most, observe, TrialResult::of);
+        ended.unwrap_or_else(|| self.unfinished(at_most))
+    }
+
+    /// As [`Self::run`], until `wanted` finds what it waits for in an effect. `None` where `at_most` passed before.
+    pub fn run_until(
+        &mut self,
+        operator: &mut ScriptedOperator,
+        at_most: Duration,
+        mut observe: impl FnMut(Stamp, &Input, &[Effect]),
+        wanted: impl Fn(&Effect) -> Option<TrialResult>,
+    ) -> Option<TrialResult> {
         let end = self.now() + at_most;
         while self.now() < end {
             let mut effects = self.beat(&mut observe);
@@ -149,12 +168,17 @@ impl VirtualTrial {
                 effects.extend(self.ask(command, &mut observe));
             }
             if let Some(reason) = operator.gave_up() {
-                return TrialResult { outcome: Outcome::Fault, reason: reason.to_owned() };
+                return Some(TrialResult { outcome: Outcome::Fault, reason: reason.to_owned() });
             }
-            if let Some(result) = effects.iter().find_map(TrialResult::of) {
-                return result;
+            if let Some(result) = effects.iter().find_map(&wanted) {
+                return Some(result);
             }
         }
+        None
+    }
+
+    /// What is said of a trial that takes too long.
+    fn unfinished(&self, at_most: Duration) -> TrialResult {
         let seen = self.snapshot();
         let reason = format!(
             "no end within {:.0} s: {} {}",

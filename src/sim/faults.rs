@@ -2,6 +2,10 @@
 //!
 //! Faults happen to the robot, the person and the messages; whether the node notices is not decided here.
 
+mod typed;
+
+pub use typed::TypedFaultError;
+
 use super::random::{Purpose, Random};
 use crate::body::{PerSide, Side};
 use serde::{Deserialize, Serialize};
@@ -53,7 +57,25 @@ pub enum FaultKind {
 }
 
 impl FaultKind {
-    /// A short name for logs and tables.
+    /// The names of all kinds.
+    pub const NAMES: [&'static str; 14] = [
+        "stale_force",
+        "frozen_force",
+        "biased_force",
+        "not_a_number_force",
+        "lost_camera",
+        "lost_pose",
+        "late_commands",
+        "dropped_commands",
+        "stale_joints",
+        "joint_fault",
+        "red_button",
+        "snag",
+        "garment_slip",
+        "pull_away",
+    ];
+
+    /// A short name for logs, tables and the command line.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -142,6 +164,12 @@ impl FaultPlan {
         let duration_seconds = (random.uniform() < 0.7).then(|| random.between(0.05, 4.0));
         let fault = kind.map(|kind| Fault { kind, side: side.flatten(), from_seconds, duration_seconds });
         Self { faults: fault.into_iter().collect() }
+    }
+
+    /// True where no picture comes at a time (seconds from the start of the world).
+    #[must_use]
+    pub fn camera_is_lost(&self, seconds: f64) -> bool {
+        self.at(seconds).lost_camera
     }
 
     /// What the faults do at a time (seconds from the start of the world).
@@ -237,7 +265,9 @@ mod tests {
             (0..400).flat_map(|seed| FaultPlan::from_seed(seed, 60.0).faults).map(|fault| fault.kind.name()).collect();
         names.sort_unstable();
         names.dedup();
-        assert_eq!(names.len(), 14, "{names:?}");
+        let mut all = FaultKind::NAMES;
+        all.sort_unstable();
+        assert_eq!(names, all);
     }
 
     #[derive(Deserialize)]

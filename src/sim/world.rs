@@ -190,6 +190,12 @@ impl World {
         }
     }
 
+    /// True where a fault keeps the camera from taking pictures.
+    #[must_use]
+    pub fn camera_is_lost(&self, now: Stamp) -> bool {
+        self.faults.camera_is_lost(self.seconds(now))
+    }
+
     fn seconds(&self, now: Stamp) -> f64 {
         self.start.map_or(0.0, |start| now.since(start).as_secs_f64())
     }

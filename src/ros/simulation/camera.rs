@@ -37,7 +37,7 @@ pub trait SimulatedCamera: Send {
     /// The pose of its optical frame (x right, y down, z forward) in `base`; it stays.
     fn mount(&self) -> Pose;
     /// The picture at this moment.
-    fn picture(&mut self) -> DepthPicture;
+    fn picture(&mut self) -> Option<DepthPicture>;
 }
 
 struct Topics {
@@ -71,10 +71,12 @@ fn take_pictures(mut camera: Box<dyn SimulatedCamera>, topics: &Topics, ended: &
         // As a real camera's driver: streams start only while someone subscribes.
         if topics.image.subscriber_count() > 0 || topics.information.subscriber_count() > 0 {
             let stamp = now();
-            let (picture, figures) = messages(stamp, &camera.picture());
-            // A picture that a listener does not take is lost; the next one comes.
-            let _ = topics.information.send(figures);
-            let _ = topics.image.send(picture);
+            if let Some(picture) = camera.picture() {
+                let (picture, figures) = messages(stamp, &picture);
+                // A picture that a listener does not take is lost; the next one comes.
+                let _ = topics.information.send(figures);
+                let _ = topics.image.send(picture);
+            }
         }
         next += PERIOD;
         match next.checked_duration_since(Instant::now()) {
