@@ -78,7 +78,14 @@ mod tests {
     fn the_table_of_a_file_says_the_same_as_the_short_form() {
         let table = "kind = \"lost_pose\", from_seconds = 20, duration_seconds = 5";
         assert_eq!(fault(table), fault("lost_pose@20+5"));
-        assert!(fault("kind = \"gout\", from_seconds = 1").is_err());
+        let pulled = "kind = \"pull_away\", metres = 0.1, side = \"left\", from_seconds = 1";
+        assert_eq!(fault(pulled), fault("pull_away=0.1@1:left"));
+        for (typed, word) in
+            [("kind = \"sneeze\", from_seconds = 1", "sneeze"), ("kind = \"lost_pose\"", "from_seconds")]
+        {
+            let refused = fault(typed).unwrap_err();
+            assert!(refused.contains(word), "{refused}");
+        }
         assert!(fault("gout@1").unwrap_err().contains("lost_pose"));
     }
 

@@ -288,23 +288,3 @@ pub(super) fn ros_failure(error: RosError) -> Failure {
         _ => Failure::Fault(error.to_string()),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sim::faults::FaultKind;
-
-    #[test]
-    fn a_fault_is_read_as_it_stands_in_a_file_and_a_wrong_key_is_named() {
-        let read = fault("kind = \"lost_pose\", from_seconds = 20, duration_seconds = 5").unwrap();
-        assert_eq!((read.kind, read.from_seconds, read.duration_seconds), (FaultKind::LostPose, 20.0, Some(5.0)));
-        let pulled = fault("kind = \"pull_away\", metres = 0.1, side = \"left\", from_seconds = 1").unwrap();
-        assert_eq!((pulled.kind, pulled.side), (FaultKind::PullAway { metres: 0.1 }, Some(Side::Left)));
-        for (typed, word) in
-            [("kind = \"sneeze\", from_seconds = 1", "sneeze"), ("kind = \"lost_pose\"", "from_seconds")]
-        {
-            let refused = fault(typed).unwrap_err();
-            assert!(refused.contains(word), "{refused}");
-        }
-    }
-}

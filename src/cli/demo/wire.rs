@@ -67,7 +67,8 @@ fn start_simulator(arguments: &Arguments, port: u16) -> Result<Simulator, Failur
     let typed = typed.chain(["--exercise".to_owned(), arguments.exercise.to_string()]);
     let profile = arguments.profile.iter().flat_map(|name| ["--profile".to_owned(), name.clone()]);
     let name = arguments.garment_name.iter().flat_map(|name| ["--garment-name".to_owned(), name.clone()]);
-    let typed = typed.chain(profile).chain(name).chain(arguments.faults.typed()).chain(["--until-input-ends".to_owned()]);
+    let typed =
+        typed.chain(profile).chain(name).chain(arguments.faults.typed()).chain(["--until-input-ends".to_owned()]);
     let mut command = environment::this_program(typed, port).map_err(Failure::fault)?;
     // The screen belongs to the console alone. The input is never written to: it ends with this process, however that
     // ends, and the simulator with it.
