@@ -11,7 +11,7 @@ mod present;
 mod run;
 
 pub use cohort::{CohortError, EXPERIMENTS, Participant, ThesisRow, cohort};
-pub use dresser::{ContactRecord, DressingError, DressingRecord, PLANNING_SECONDS, PassRecord, dress, dress_with};
+pub use dresser::{ContactRecord, DressingRecord, PLANNING_SECONDS, PassRecord, dress, dress_with};
 pub use example::worked_example;
 pub use limits::figures_5_real;
 pub use present::{duration_by_iteration, energy_by_iteration, run};

@@ -1,7 +1,7 @@
 //! A gripper on a rig instead of a robot's arm: the same person, garment and wrench estimate, without joints.
 //!
-//! Cohorts of thousands of trials need no inverse kinematics: the gripper is exactly where it is told to be. It never
-//! plans; whoever uses it moves it along a path at a speed that the robot could reach.
+//! Forces of the garments are compared and timed here, where nothing else can change them: the gripper is exactly where it is
+//! told to be. It never plans; whoever uses it moves it along a path at a speed that the robot could reach.
 
 use super::garment::{Garment, Holder};
 use super::person::{ArmPoints, Reaction};

@@ -9,7 +9,7 @@ use crate::body::{PerSide, Side};
 use crate::experiments::findings::{Drawing, ExperimentError, Findings, Row};
 use crate::geometry::Curve;
 use crate::modelling::stick::{Space, StickFit};
-use crate::modelling::{ArmSpace, FitSettings, Mixture};
+use crate::modelling::{ArmSpace, FitSettings, Mixture, MovementSpace};
 use crate::planning::criteria::{Reach, comfort};
 use crate::report::plot::{Colour, Dash, Figure, Layer, Marker, Plot, View, covariance_in, path_in, project};
 use crate::sim::WorldSetup;
@@ -89,10 +89,10 @@ pub fn figures_5_real(seed: u64) -> Result<Findings, ExperimentError> {
         let person = limit.person();
         let seen = person.exercise(seed);
         let fitted = |side| ArmSpace::fit(seen.get(side), &FitSettings::default(), seed).map_err(other);
-        let spaces = PerSide { left: fitted(Side::Left)?, right: fitted(Side::Right)? };
+        let spaces = MovementSpace { arms: PerSide { left: fitted(Side::Left)?, right: fitted(Side::Right)? } };
         let outcomes = outcomes(&person, &spaces, seed)?;
-        findings.rows.extend(outcomes.iter().map(|outcome| row(&limit, &person, &spaces, outcome)));
-        findings.drawings.push(drawing(&limit, &spaces, &outcomes));
+        findings.rows.extend(outcomes.iter().map(|outcome| row(&limit, &person, &spaces.arms, outcome)));
+        findings.drawings.push(drawing(&limit, &spaces.arms, &outcomes));
     }
     findings.remarks.push(
         "Reach is the mean over the path of the log density of the best limb, less the best possible (0 is best); distance is \
@@ -103,13 +103,13 @@ pub fn figures_5_real(seed: u64) -> Result<Findings, ExperimentError> {
     Ok(findings)
 }
 
-fn outcomes(person: &SimulatedPerson, spaces: &PerSide<ArmSpace>, seed: u64) -> Result<Vec<Outcome>, ExperimentError> {
+fn outcomes(person: &SimulatedPerson, spaces: &MovementSpace, seed: u64) -> Result<Vec<Outcome>, ExperimentError> {
     let cases: Vec<(Side, usize)> =
         Side::BOTH.into_iter().flat_map(|side| (0..STRATEGIES.len()).map(move |strategy| (side, strategy))).collect();
     let run = |(side, strategy): (Side, usize)| {
         let setup = WorldSetup { person: person.clone(), seed, ..WorldSetup::default() };
         let kind = STRATEGIES.get(strategy).map_or(StrategyKind::Force, |(kind, _)| *kind);
-        let record = dress_with(&setup, side, kind, Some(spaces.get(side))).map_err(other)?;
+        let record = dress_with(&setup, side, kind, Some(spaces)).map_err(other)?;
         Ok(Outcome { side, strategy, record })
     };
     cases.into_par_iter().map(run).collect()
@@ -121,7 +121,7 @@ fn row(limit: &Limit, person: &SimulatedPerson, spaces: &PerSide<ArmSpace>, outc
     let last = record.passes.last();
     let path = last.map(|pass| pass.summary.path.clone()).unwrap_or_default();
     let [hand, elbow, shoulder] = person.posture().get(*side).dressed();
-    let initial = space.initial_path([(elbow - hand).norm(), (shoulder - elbow).norm()]);
+    let initial = [hand, elbow, shoulder];
     let reach = Reach::new(space.clone(), &initial, StickFit::new(Space::Spatial)).along(&path, SPACING_METRES);
     let comfort = comfort(&path, &Curve::new(person.preferred_path(*side)), PLAY_METRES, SPACING_METRES);
     let components = |mixture: &Mixture| mixture.components().len();

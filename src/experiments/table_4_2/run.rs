@@ -1,8 +1,9 @@
 //! The table itself: the cohort dressed over and over, each figure beside the thesis' own.
 
 use super::cohort::{CohortError, EXPERIMENTS, Participant, cohort};
-use super::dresser::{DressingError, DressingRecord, dress};
+use super::dresser::{DressingRecord, dress};
 use crate::body::Side;
+use crate::headless::VirtualError;
 use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
@@ -11,7 +12,7 @@ use thiserror::Error;
 pub const SERIES: u32 = 40;
 
 /// Why the table could not be made.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
     /// A shipped profile is unusable.
@@ -19,7 +20,7 @@ pub enum TableError {
     Cohort(#[from] CohortError),
     /// An experiment could not be run.
     #[error(transparent)]
-    Dressing(#[from] DressingError),
+    Dressing(#[from] VirtualError),
 }
 
 /// One row: a participant's means and sample deviations, with the thesis' means.
@@ -45,7 +46,7 @@ pub struct CohortRow {
     pub duration_seconds_mean: f64,
     /// Its deviation.
     pub duration_seconds_sd: f64,
-    /// Experiments that ended at the most iterations with resistance left.
+    /// Experiments that ended at the most iterations with resistance left, or in which the arm was not dressed.
     pub not_converged: usize,
     /// The thesis' iterations.
     pub thesis_iterations: f64,
@@ -59,7 +60,7 @@ pub struct CohortRow {
 ///
 /// # Errors
 /// Where an experiment cannot be run.
-pub fn experiments(participant: &Participant, series: u32, seed: u64) -> Result<Vec<DressingRecord>, DressingError> {
+pub fn experiments(participant: &Participant, series: u32, seed: u64) -> Result<Vec<DressingRecord>, VirtualError> {
     (0..series * EXPERIMENTS)
         .into_par_iter()
         .map(|index| {
@@ -124,8 +125,8 @@ mod tests {
 
     #[test]
     fn every_experiment_of_a_series_ends_with_falling_resistance_and_the_hard_need_more() {
-        let rows = table(2, 7).unwrap();
-        assert!(rows.iter().all(|row| row.experiments == 10 && row.iterations_mean <= 8.0));
+        let rows = table(1, 7).unwrap();
+        assert!(rows.iter().all(|row| row.experiments == 5 && row.iterations_mean <= 8.0));
         let mean = |numbers: [u32; 4]| {
             let chosen = rows.iter().filter(|row| numbers.contains(&row.participant));
             chosen.map(|row| row.energy_newtons_mean).sum::<f64>() / 4.0
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn a_seed_repeats_its_table() {
         let people = cohort().unwrap();
-        let one = |seed| experiments(&people[3], 1, seed).unwrap();
+        let one = |seed| experiments(&people[0], 1, seed).unwrap();
         assert_eq!(one(3), one(3));
         assert_ne!(one(3), one(4));
     }
