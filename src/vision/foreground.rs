@@ -186,7 +186,7 @@ fn list(probe: &ProbeImage, pixels: &mut Vec<Pixel>) {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "images have at most 4096 pixels a side")]
-const fn pixel(column: usize, row: usize, depth: u16) -> Pixel {
+pub(super) const fn pixel(column: usize, row: usize, depth: u16) -> Pixel {
     Pixel { column: column as u16, row: row as u16, depth }
 }
 

@@ -4,6 +4,8 @@
 //! than half of the thesis' mean of pixels. A joint without enough of its own pixels near the place found is not seen: `None`.
 //! Buffers are kept from frame to frame, so a frame costs no allocation once the first has been seen.
 
+mod arm;
+mod bones;
 mod chain;
 mod mean;
 mod mode;
@@ -12,15 +14,16 @@ pub use chain::SegmentLengths;
 
 use super::camera::Intrinsics;
 use super::depth::DepthImage;
-use super::foreground::{Facing, Pixel, View, ViewError};
-use super::part::{CLASSES, NONE, OTHER, Part, parts_of};
+use super::foreground::{self, Facing, Pixel, View, ViewError};
+use super::part::{CLASSES, NONE, OTHER, PARTS, Part, parts_of};
 use super::probe::ProbeImage;
 use super::tree::{Forest, Leaf, NO_VOTE, VOTED, vote_index};
 use super::walk;
 use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide, Side};
 use crate::geometry::{Point, Pose, Vector};
 use crate::time::Stamp;
-use mode::{Mode, ModeFinder, Modes, VotePoint};
+use bones::Bones;
+use mode::{ModeFinder, Modes, VotePoint};
 use nalgebra::Matrix3;
 
 /// Every second column and row votes: neighbours tell the same.
@@ -29,10 +32,6 @@ const VOTING_STEP: u16 = 2;
 const LEAST_SHARE: f32 = 0.15;
 /// Added to a vote's variance in square metres, so that no single leaf outweighs all others.
 const VARIANCE_FLOOR: f32 = 2e-4;
-/// Pixels of a joint's parts count as its own within this distance, in metres.
-const OWN_RADIUS: f32 = 0.13;
-/// A joint is seen where its own pixels cover this area across the view, in square metres: a square of 16 mm.
-const LEAST_AREA: f32 = 2.5e-4;
 /// Deviation of a joint that is found with certainty, in metres: what remains is mostly a constant for each person.
 const LEAST_DEVIATION: f64 = 0.012;
 
@@ -84,6 +83,7 @@ pub struct PoseFinder {
     leaves: Vec<Vec<u32>>,
     votes: [Vec<VotePoint>; VOTED],
     modes: ModeFinder,
+    bones: Bones,
     lengths: SegmentLengths,
     certainty: f64,
     facing: Facing,
@@ -102,6 +102,7 @@ impl PoseFinder {
             leaves: Vec::new(),
             votes: Default::default(),
             modes: ModeFinder::default(),
+            bones: Bones::default(),
             lengths: SegmentLengths::default(),
             certainty: 0.0,
             facing: Facing::default(),
@@ -139,14 +140,54 @@ impl PoseFinder {
         self.classify(&camera);
         let candidates = PerSide::from_fn(|side| self.candidates(side, &neck));
         let chosen = chain::choose(&candidates, &neck, &self.lengths);
-        let mut joints = CameraJoints::default();
-        for side in Side::BOTH {
-            for (joint, mode) in Joint::ALL.into_iter().zip(chosen.get(side)) {
-                let estimate = mode.and_then(|mode| self.estimate(side, joint, &camera, &mode));
-                joints.arms.get_mut(side).set(joint, estimate.map(|found| turned_back(found, view.facing)));
+        let known = chosen.map(|_, modes| modes.map(|mode| mode.map(|mode| mode.place)));
+        Ok(self.lay_bones(&neck, &known))
+    }
+
+    /// Finds the joints from labels that are known (as in [`super::part`], a label a pixel of the image) instead of a forest's:
+    /// what the rules for joints do by themselves.
+    ///
+    /// # Errors
+    /// As [`PoseFinder::find`].
+    pub fn find_in_labels(
+        &mut self,
+        image: &DepthImage,
+        labels: &[u8],
+        view: &View<'_>,
+    ) -> Result<CameraJoints, ViewError> {
+        view.check(image)?;
+        self.facing = view.facing;
+        let (width, height) = (image.width(), image.height());
+        self.camera = view.probe_camera(width, height);
+        self.classified.clear();
+        for (index, (label, depth)) in labels.iter().zip(image.millimetres()).enumerate() {
+            if *depth > 0 && usize::from(*label) < PARTS {
+                let place = if view.facing == Facing::UpperEdge { width * height - 1 - index } else { index };
+                let pixel = foreground::pixel(place % width, place / width, *depth);
+                self.classified.push(Classified { pixel, label: *label });
             }
         }
-        Ok(joints)
+        Ok(self.lay_bones(&view.probe_neck(), &PerSide::default()))
+    }
+
+    /// Lays an arm into the skin of each side.
+    fn lay_bones(&mut self, neck: &Point, known: &PerSide<[Option<Point>; Joint::ALL.len()]>) -> CameraJoints {
+        let counts = bones::counts(&self.classified);
+        let mut joints = CameraJoints::default();
+        for side in Side::BOTH {
+            let found =
+                self.bones.lay(side, &self.classified, &counts, &self.camera, (neck, &self.lengths), known.get(side));
+            for (joint, found) in Joint::ALL.into_iter().zip(found) {
+                let estimate = found.is_seen().then(|| JointEstimate {
+                    position: found.place,
+                    covariance: found.covariance,
+                    confidence: found.confidence(),
+                    evidence: Evidence::Seen,
+                });
+                joints.arms.get_mut(side).set(joint, estimate.map(|found| turned_back(found, self.facing)));
+            }
+        }
+        joints
     }
 
     /// A joint in the last image by the thesis' rule, the middle of its part; `None` where that is not seen, and for elbow and
@@ -215,38 +256,6 @@ impl PoseFinder {
         let (votes, modes) = (&self.votes, &mut self.modes);
         Joint::ALL
             .map(|joint| votes.get(vote_index(side, joint)).map(|votes| modes.find(votes, neck)).unwrap_or_default())
-    }
-
-    /// A joint at a place, where enough of its own pixels lie near.
-    fn estimate(&self, side: Side, joint: Joint, camera: &Intrinsics, mode: &Mode) -> Option<JointEstimate> {
-        let area = self.own_area(side, joint, camera, &mode.place);
-        (area >= LEAST_AREA).then(|| JointEstimate {
-            position: mode.place,
-            covariance: mode.scatter * 0.1 + Matrix3::identity() * LEAST_DEVIATION.powi(2),
-            confidence: mode.share,
-            evidence: Evidence::Seen,
-        })
-    }
-
-    /// How much area the pixels of a joint's parts cover near a place.
-    #[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for metres")]
-    fn own_area(&self, side: Side, joint: Joint, camera: &Intrinsics, place: &Point) -> f32 {
-        let parts = parts_of(joint);
-        let (fx, fy) = (camera.fx as f32, camera.fy as f32);
-        let own = |label: u8| parts.iter().any(|part| part.label(side) == label);
-        let (x, y, z) = (place.x as f32, place.y as f32, place.z as f32);
-        let near = |pixel: &Pixel| {
-            let depth = f32::from(pixel.depth) / 1000.0;
-            let right = (f32::from(pixel.column) - camera.cx as f32) / fx * depth - x;
-            let down = (f32::from(pixel.row) - camera.cy as f32) / fy * depth - y;
-            right * right + down * down + (depth - z) * (depth - z) < OWN_RADIUS * OWN_RADIUS
-        };
-        let pixel_area = |pixel: &Pixel| (f32::from(pixel.depth) / 1000.0).powi(2) / (fx * fy);
-        self.classified
-            .iter()
-            .filter(|found| own(found.label) && near(&found.pixel))
-            .map(|found| pixel_area(&found.pixel))
-            .sum()
     }
 }
 

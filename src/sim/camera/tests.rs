@@ -1,7 +1,7 @@
 use super::*;
 use crate::body::{Joint, Side};
-use crate::vision::Part;
-use crate::vision::part::OTHER;
+use crate::vision::part::{OTHER, parts_of};
+use crate::vision::{Part, PoseFinder};
 
 fn subject(seed: u64) -> Sampled {
     Subject::sampled(seed).at_random(seed)
@@ -76,4 +76,27 @@ fn the_robot_s_camera_sees_both_shoulders_of_the_person_it_stands_behind_with_th
         camera.pixel(&point).unwrap().0
     });
     assert!(columns[0] < columns[1]);
+}
+
+#[test]
+fn with_true_labels_joints_are_found_within_centimetres_and_covered_ones_are_not_made_up() {
+    let (mut errors, mut finder) = (Vec::new(), PoseFinder::new(crate::vision::generic::forest().unwrap()));
+    for number in 0..6 {
+        let image = dataset::Frame { person: 9_000 + number, number: 2 * number }.render();
+        let labels = &image.rendering.labels;
+        let found = finder.find_in_labels(&image.rendering.depth, labels, &image.view()).unwrap();
+        for (side, arm) in found.arms.iter() {
+            for joint in Joint::ALL {
+                let own = |label: &&u8| parts_of(joint).iter().any(|part| part.label(side) == **label);
+                match arm.position(joint) {
+                    None => {}
+                    Some(_) if labels.iter().filter(own).count() < 20 => panic!("{side} {joint} is covered"),
+                    Some(place) => errors.push((place - image.sampled.scene.joint(side, joint)).norm()),
+                }
+            }
+        }
+    }
+    assert!(errors.len() > 40, "{}", errors.len());
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(mean < 0.025, "{mean}");
 }

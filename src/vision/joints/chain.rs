@@ -146,10 +146,9 @@ fn candidate(modes: &[Modes; Joint::ALL.len()], (place, number): (usize, usize))
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Matrix3;
 
     fn heap(x: f64, share: f64) -> Option<Mode> {
-        Some(Mode { place: Point::new(x, 0.0, 1.0), scatter: Matrix3::identity() * 1e-4, share })
+        Some(Mode { place: Point::new(x, 0.0, 1.0), share })
     }
 
     /// A straight arm along x with all candidates in place.

@@ -2,8 +2,7 @@
 //!
 //! Each cell keeps its points' weight and centre, so a search costs the same however many points there are.
 
-use crate::geometry::{Point, Vector};
-use nalgebra::Matrix3;
+use crate::geometry::Point;
 
 /// Cells along each side of the grid, and a cell's side in metres: 2.56 m about the neck.
 const CELLS: usize = 64;
@@ -19,8 +18,6 @@ const STANDSTILL: f32 = 2e-4;
 const APART: f64 = 0.15;
 /// A mode with less of the weight than this share is none.
 const LEAST_SHARE: f64 = 0.03;
-/// Variance of a point within its cell, square metres: that of an even spread over the cell's side.
-const CELL_VARIANCE: f64 = (CELL * CELL) as f64 / 12.0;
 
 /// Most modes that are looked for.
 pub(super) const MOST_MODES: usize = 3;
@@ -36,8 +33,6 @@ pub(super) struct VotePoint {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
     pub(super) place: Point,
-    /// Weighted covariance of the points in the window, square metres.
-    pub(super) scatter: Matrix3<f64>,
     /// Share of all weight that lies in the window.
     pub(super) share: f64,
 }
@@ -157,15 +152,9 @@ impl ModeFinder {
     }
 
     fn describe(&self, place: &[f32; 3]) -> Mode {
-        let centre = Vector::from(place.map(f64::from));
-        let (mut inside, mut scatter) = (0.0_f64, Matrix3::zeros());
-        self.visit(place, |cell, _| {
-            let offset = Vector::from(cell.centre().map(f64::from)) - centre;
-            let weight = f64::from(cell.weight);
-            inside += weight;
-            scatter += (offset * offset.transpose() + Matrix3::identity() * CELL_VARIANCE) * weight;
-        });
-        Mode { place: Point::from(centre), scatter: scatter / inside.max(1e-30), share: inside / self.total.max(1e-30) }
+        let mut inside = 0.0_f64;
+        self.visit(place, |cell, _| inside += f64::from(cell.weight));
+        Mode { place: Point::from(place.map(f64::from)), share: inside / self.total.max(1e-30) }
     }
 
     /// Shows each cell in the window about a place with its share in it, which falls to nothing at the radius.
@@ -239,7 +228,6 @@ mod tests {
         let first = modes[0].unwrap();
         assert!((first.place - Point::new(0.3, 0.1, 1.0)).norm() < 0.003, "{}", first.place);
         assert!((first.share - 0.75).abs() < 1e-6);
-        assert!(first.scatter.trace() < 0.002);
         let second = modes[1].unwrap();
         assert!((second.place - Point::new(-0.3, 0.1, 1.2)).norm() < 0.003, "{}", second.place);
         assert!((second.share - 0.25).abs() < 1e-6);
