@@ -14,6 +14,7 @@ mod console;
 mod demo;
 mod doctor;
 mod export;
+mod eyes;
 mod faults;
 mod fit;
 mod images;

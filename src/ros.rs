@@ -10,6 +10,7 @@ pub mod ears;
 mod encode;
 pub mod environment;
 pub mod error;
+mod frames;
 pub mod graph;
 mod greeting;
 pub mod link;
@@ -27,6 +28,7 @@ pub mod xmlrpc;
 
 pub use decode::DepthFrame;
 pub use error::RosError;
+pub use frames::FrameError;
 pub use link::{Commander, DepthWatcher, LinkSettings, RobotLink, RosLimb, Showing, StopPublisher};
 pub use monitor::TopicReport;
 pub use moveit::{MoveItError, MoveItPlanner};

@@ -349,6 +349,9 @@ impl Supervisor {
                 );
                 self.log(now, Level::Error, "link", text);
             }
+            LinkEvent::CannotSee { reason } => {
+                self.log(now, Level::Warning, "pose", format!("the depth camera gives no pose: {reason}"));
+            }
             LinkEvent::WorkerLost { name } => {
                 self.stop(now, &format!("the part of valet called {name} died"), Outcome::Fault);
             }

@@ -3,6 +3,7 @@
 //! Only glue: each part knows none of the others.
 
 use super::exit::Failure;
+use super::eyes::{Eyes, Sight};
 use super::log::{self, ProgramLog};
 use super::planning::PlannerThread;
 use super::recording::Recording;
@@ -46,6 +47,7 @@ pub(super) struct Session {
     stop: Option<StopThread>,
     shell: ShellView,
     recorder: Option<Arc<Recorder>>,
+    eyes: Option<Eyes>,
     node: Node,
     log: ProgramLog,
 }
@@ -66,6 +68,7 @@ struct ShellView {
     link: Arc<RobotLink>,
     recorder: Option<Arc<Recorder>>,
     master: String,
+    pose_source: &'static str,
     choices: Choices,
 }
 
@@ -74,6 +77,7 @@ impl ShellView {
         let topics = self.link.topics();
         snapshot.topics = Shared::new(topics.iter().map(|report| topic_health(snapshot.now, report)).collect());
         snapshot.master.uri.clone_from(&self.master);
+        self.pose_source.clone_into(&mut snapshot.body.source);
         snapshot.recorder = self.recorder.as_deref().map(recorder_view).unwrap_or_default();
         let strategies = snapshot.choices.strategies.clone();
         snapshot.choices = Shared::new(Choices { strategies, ..self.choices.clone() });
@@ -152,10 +156,12 @@ impl Session {
         let recorder = opening.recording.as_ref();
         let recorder = recorder.map(|place| place.start(&opening.setup, opening.person, told)).transpose()?;
         let recorder = recorder.map(Arc::new);
+        let sight = Sight::of(opening.person)?;
         let is_planned_outside = opening.setup.settings.planner == PlannerKind::MoveIt;
         let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
         let node = opening.node;
         let answers = sink.clone();
+        let seen = sink.clone();
         let planner = is_planned_outside.then(|| PlannerThread::start(&node, model.clone(), answers));
         let planner = planner.transpose().map_err(Failure::fault)?;
         let link =
@@ -179,11 +185,13 @@ impl Session {
             link.watch_depth(depth_recorder(Arc::downgrade(recorder)));
         }
         let link = Arc::new(link);
+        let pose_source = if sight.is_some() { "depth camera" } else { "skeleton tracker" };
+        let eyes = sight.map(|sight| Eyes::open(sight, Arc::clone(&link), seen)).transpose().map_err(Failure::fault)?;
         let garments = opening.person.profile.garments.iter().map(|garment| garment.name.clone()).collect();
         let profiles = profile_names(&Places::of_this_machine());
         let choices = Choices { profiles, garments, ..Choices::default() };
         let master = node.master().to_owned();
-        let shell = ShellView { link: Arc::clone(&link), recorder: recorder.clone(), master, choices };
+        let shell = ShellView { link: Arc::clone(&link), recorder: recorder.clone(), master, pose_source, choices };
         let outlet = RobotOutlet {
             limbs,
             commander: link.commander(),
@@ -196,7 +204,7 @@ impl Session {
         // Nobody else sets it: this cannot fail.
         let _ = inbox.set(engine.inbox());
         engine.inbox().offer(Input::Link(LinkEvent::MasterBack));
-        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, node, log })
+        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, eyes, node, log })
     }
 
     /// The stop, for keys and panics: sets the latch, never blocks.
@@ -266,6 +274,7 @@ impl Session {
     pub(super) fn close(mut self) -> Option<PathBuf> {
         drop(self.engine.take());
         drop(self.stop.take());
+        drop(self.eyes.take());
         let Self { shell: ShellView { link, recorder: shared, .. }, recorder, node, log, .. } = self;
         // The recorder is finished by its last owner.
         drop(shared);

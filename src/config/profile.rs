@@ -3,10 +3,12 @@
 //! Never holds a name, an address or a date of birth; such keys are refused. Shape and movement can still identify a
 //! person, so a profile is health data: `valet profile encrypt` keeps it encrypted on disk.
 
+mod camera;
 mod check;
 mod learn;
 mod load;
 
+pub use camera::{CameraPlace, CameraSetup};
 pub use load::LoadedProfile;
 
 use crate::body::Side;
@@ -40,6 +42,9 @@ pub struct Profile {
     /// The person's decision tree for the depth camera: a file, relative to the profile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tree: Option<PathBuf>,
+    /// The depth camera, where the person's pose is to come from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraSetup>,
     /// Garments by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub garments: Vec<Garment>,

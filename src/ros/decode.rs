@@ -197,7 +197,7 @@ pub fn pose(message: &geometry_msgs::Pose) -> Pose {
 }
 
 /// Metres, and a quaternion as messages order it: x, y, z, w.
-fn isometry(place: [f64; 3], quaternion: [f64; 4]) -> Isometry3<f64> {
+pub(super) fn isometry(place: [f64; 3], quaternion: [f64; 4]) -> Isometry3<f64> {
     let rotation = UnitQuaternion::new_normalize(Quaternion::from(quaternion));
     Isometry3::from_parts(Translation3::from(place), rotation)
 }

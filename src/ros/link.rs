@@ -15,6 +15,7 @@ pub use show::Showing;
 use super::decode::DepthFrame;
 use super::encode;
 use super::error::RosError;
+use super::frames::FrameError;
 use super::message::{baxter_core_msgs, std_msgs};
 use super::monitor::{Monitor, TopicReport, now};
 use super::node::Node;
@@ -22,12 +23,13 @@ use super::subscription::Sink;
 use super::watch::Watch;
 use crate::assembly::SwitchRequest;
 use crate::body::{PerSide, Side};
+use crate::geometry::Pose;
 use crate::kinematics::JointVector;
 use crate::robot::PortError;
 use rosrust::{Message, Publisher, Service};
 use senses::{NewestDepth, subscribe};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, PoisonError};
 
 /// The share of their top speeds that the arms are given: the motion limits ask for 0.75 rad/s of a shoulder's 2 rad/s, and
 /// with a third more an arm catches up after a pause without lunging.
@@ -117,6 +119,19 @@ impl RobotLink {
     #[must_use]
     pub fn newest_depth(&self) -> Option<DepthFrame> {
         self.depth.take()
+    }
+
+    /// Hears no tracker from now on: the pose comes from depth images.
+    pub fn ignore_tracker(&self) {
+        self.depth.is_source.store(true, Ordering::SeqCst);
+    }
+
+    /// The pose of a frame in `base`, as `/tf` and `/tf_static` tell.
+    ///
+    /// # Errors
+    /// [`FrameError`] where the chain of frames is broken, old or a circle.
+    pub fn place_of(&self, frame: &str) -> Result<Pose, FrameError> {
+        self.depth.frames.lock().unwrap_or_else(PoisonError::into_inner).in_base(frame, now())
     }
 
     /// Shows every depth image to `watcher` from now on. The first watcher stays.

@@ -137,6 +137,11 @@ pub enum LinkEvent {
         /// How many since the last report.
         lost: u64,
     },
+    /// The depth camera's images give no pose of the person.
+    CannotSee {
+        /// Why, and what to do.
+        reason: String,
+    },
     /// The recorder cannot write any more.
     RecorderFailed {
         /// Why.

@@ -33,6 +33,9 @@ pub(super) fn check(profile: &Profile) -> Result<(), (String, String)> {
     if let Some(person) = &profile.simulated {
         person.check().map_err(|error| ("simulated".to_owned(), error.to_string()))?;
     }
+    if let Some(camera) = &profile.camera {
+        camera.check()?;
+    }
     garments(profile)?;
     learned(profile)
 }

@@ -3,6 +3,7 @@
 use super::RosError;
 use crate::body::Side;
 use crate::ros::decode::{self, AnyAssemblyState, DepthFrame, skeleton::Skeleton};
+use crate::ros::frames::Frames;
 use crate::ros::message::{baxter_core_msgs, sensor_msgs, tf2_msgs};
 use crate::ros::monitor::now;
 use crate::ros::subscription::{Decoded, Sink, Subscription, TopicNeed};
@@ -29,6 +30,10 @@ pub(super) struct NewestDepth {
     frame: Arc<Mutex<Option<DepthFrame>>>,
     matrix: Arc<Mutex<Option<[f64; 9]>>>,
     pub(super) watcher: Arc<Watcher>,
+    /// Where the camera's frame is, among all others.
+    pub(super) frames: Arc<Mutex<Frames>>,
+    /// Whether the pose comes from these images, and not from a tracker.
+    pub(super) is_source: Arc<AtomicBool>,
 }
 
 /// Sees every depth image as it comes, in the thread that receives it: must be quick.
@@ -128,14 +133,20 @@ fn subscribe_camera(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription
         newest.calibrate(message.K);
         Decoded::Kept
     };
-    let skeletons = Mutex::new(Skeleton::default());
-    let transforms = move |message: tf2_msgs::TFMessage| {
-        let pose = skeletons.lock().unwrap_or_else(PoisonError::into_inner).take(&message.transforms);
-        pose.map_or(Decoded::Kept, |pose| Decoded::Input(Input::Body(pose)))
+    let skeletons = Arc::new(Mutex::new(Skeleton::default()));
+    let transforms = |is_static: bool| {
+        let (skeletons, depth) = (Arc::clone(&skeletons), depth.clone());
+        move |message: tf2_msgs::TFMessage| {
+            depth.frames.lock().unwrap_or_else(PoisonError::into_inner).take(&message.transforms, is_static);
+            let pose = skeletons.lock().unwrap_or_else(PoisonError::into_inner).take(&message.transforms);
+            let pose = pose.filter(|_| !depth.is_source.load(Ordering::SeqCst));
+            pose.map_or(Decoded::Kept, |pose| Decoded::Input(Input::Body(pose)))
+        }
     };
     Ok(vec![
         Subscription::new(need("/camera/depth/image_raw", 1, THIRTY_HERTZ, false), sink, image)?,
         Subscription::new(need("/camera/depth/camera_info", 1, THIRTY_HERTZ, false), sink, information)?,
-        Subscription::new(need("/tf", 64, ANY_RATE, false), sink, transforms)?,
+        Subscription::new(need("/tf", 64, ANY_RATE, false), sink, transforms(false))?,
+        Subscription::new(need("/tf_static", 64, ANY_RATE, false), sink, transforms(true))?,
     ])
 }

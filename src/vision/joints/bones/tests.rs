@@ -3,12 +3,12 @@ use crate::vision::foreground;
 use crate::vision::part::{OTHER, PARTS};
 
 const CAMERA: Intrinsics = Intrinsics { fx: 550.0, fy: 550.0, cx: 319.5, cy: 239.5 };
-const NECK: Point = Point::new(0.0, 0.0, 1.0);
+const NECK: Point = Point::new(0.0, -0.2, 1.4);
 
 /// A left arm that is bent at the elbow, seen from above: shoulder, elbow, wrist, knuckle.
 fn ends() -> [Point; 4] {
     let lengths = SegmentLengths::default();
-    let shoulder = Point::new(0.19, 0.02, 1.11);
+    let shoulder = Point::new(0.19, -0.18, 1.51);
     let elbow = shoulder + Vector::new(0.75, 0.55, 0.37).normalize() * lengths.upper_arm;
     let wrist = elbow + Vector::new(-0.35, 0.9, -0.1).normalize() * lengths.forearm;
     [shoulder, elbow, wrist, wrist + Vector::new(-0.2, 0.9, 0.1).normalize() * lengths.palm]
