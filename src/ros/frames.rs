@@ -62,13 +62,13 @@ struct Frame {
 
 /// The frames that are known.
 #[derive(Clone, Debug, Default)]
-pub struct Frames {
+pub(super) struct Frames {
     frames: HashMap<String, Frame>,
 }
 
 impl Frames {
     /// Takes a message's transforms. Those on `/tf_static` stay for good.
-    pub fn take(&mut self, transforms: &[geometry_msgs::TransformStamped], is_static: bool) {
+    pub(super) fn take(&mut self, transforms: &[geometry_msgs::TransformStamped], is_static: bool) {
         for transform in transforms {
             let child = plain(&transform.child_frame_id).to_owned();
             let (t, r) = (&transform.transform.translation, &transform.transform.rotation);
@@ -88,7 +88,7 @@ impl Frames {
     ///
     /// # Errors
     /// [`FrameError`] where the chain is broken, old or a circle.
-    pub fn in_base(&self, name: &str, now: Stamp) -> Result<Pose, FrameError> {
+    pub(super) fn in_base(&self, name: &str, now: Stamp) -> Result<Pose, FrameError> {
         let mut pose = Pose::identity();
         let mut at = plain(name);
         for _ in 0..LONGEST_CHAIN {

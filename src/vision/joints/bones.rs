@@ -61,7 +61,7 @@ impl Found {
 pub(super) struct Bones {
     skin: Vec<Skin>,
     /// The area that a point of skin stands for, in square metres, at one metre.
-    unit_areas: Vec<f32>,
+    unit_areas: Vec<f64>,
 }
 
 /// Pixels of each class.
@@ -140,7 +140,7 @@ impl Bones {
                 sum.1 += 1;
             }
             self.skin.push(skin(&place, limb));
-            self.unit_areas.push((every as f64 / (camera.fx * camera.fy)) as f32);
+            self.unit_areas.push(every as f64 / (camera.fx * camera.fy));
         }
         let mut middles = [None; LIMBS];
         for ((middle, (sum, count)), pixels) in middles.iter_mut().zip(sums).zip(of_side.iter().skip(1)) {
@@ -184,7 +184,7 @@ impl Bones {
             (at - place).norm_squared() < OWN_RADIUS * OWN_RADIUS
                 && (skin.limb == TORSO || arm.off(skin).abs() < OFF_THE_LIMB)
         };
-        let area = |(skin, unit): (&Skin, &f32)| f64::from(skin.place[2]).powi(2) * f64::from(*unit);
+        let area = |(skin, unit): (&Skin, &f64)| f64::from(skin.place[2]).powi(2) * unit;
         self.skin.iter().zip(&self.unit_areas).filter(|(skin, _)| own(skin.limb) && near(skin)).map(area).sum()
     }
 }
