@@ -1,9 +1,12 @@
 //! `kill -9` in the middle of a recording: the journal opens and holds all but its last second.
 //!
-//! The process that is killed is this test itself, begun again: it records samples at the full rate of a robot.
+//! The process that is killed is this test itself, begun again: it records samples at the full rate of a robot. Twelve kills at
+//! random moments are part of the tests; `VALET_TEST_KILLS=200 cargo test --test killed_recorder` makes two hundred.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail loudly anywhere")]
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -16,6 +19,14 @@ use valet::time::Stamp;
 
 /// The variable by which the process that is to be killed knows what it is.
 const FOLDER: &str = "VALET_TEST_RECORDS_UNTIL_IT_IS_KILLED";
+/// The variable that asks for another number of kills.
+const KILLS: &str = "VALET_TEST_KILLS";
+/// Kills without it.
+const USUAL_KILLS: u64 = 12;
+/// Recordings side by side: each sleeps most of its time.
+const SIDE_BY_SIDE: u64 = 4;
+/// The moments of the kills.
+const SEED: u64 = 8;
 
 fn now() -> Stamp {
     Stamp::ZERO + SystemTime::now().duration_since(UNIX_EPOCH).unwrap()
@@ -79,23 +90,33 @@ fn after_kill_9_the_journal_opens_and_holds_all_but_the_last_second() {
     if let Some(folder) = std::env::var_os(FOLDER) {
         return record_until_killed(Path::new(&folder));
     }
-    for delay in [50, 450, 930] {
-        let folder = tempfile::tempdir().unwrap();
-        let mut recording = Recording::start(folder.path());
-        let path = growing_journal(folder.path());
-        std::thread::sleep(Duration::from_millis(delay));
-        let killed = now();
-        recording.kill();
-        let (mut last, mut next) = (Stamp::ZERO, 0);
-        let reading = read(&path, |_, step| {
-            assert_eq!(step.number, next, "no hole before the end");
-            (last, next) = (step.now, next + 1);
-        })
-        .unwrap();
-        assert!(!reading.finished && reading.problems.is_empty(), "{:?}", reading.problems);
-        assert!(next > 100 && reading.lost == 0, "{next} steps");
-        // A second between two flushes, and another for a disk and a machine that are busy.
-        let missing = killed.since(last);
-        assert!(missing < Duration::from_secs(2), "{missing:?} are missing");
-    }
+    let kills = std::env::var(KILLS).map_or(USUAL_KILLS, |text| text.parse().unwrap());
+    std::thread::scope(|scope| {
+        for lane in 0..SIDE_BY_SIDE {
+            scope.spawn(move || (lane..kills).step_by(SIDE_BY_SIDE as usize).for_each(kill_once));
+        }
+    });
+}
+
+/// Kills a recording at a moment that the number of the kill decides, and reads what is left of it.
+fn kill_once(number: u64) {
+    let delay = ChaCha8Rng::seed_from_u64(SEED + number).random_range(0..2500);
+    let folder = tempfile::tempdir().unwrap();
+    let mut recording = Recording::start(folder.path());
+    let path = growing_journal(folder.path());
+    std::thread::sleep(Duration::from_millis(delay));
+    let killed = now();
+    recording.kill();
+    let (mut last, mut next) = (Stamp::ZERO, 0);
+    let reading = read(&path, |_, step| {
+        assert_eq!(step.number, next, "kill {number}: no hole before the end");
+        (last, next) = (step.now, next + 1);
+    })
+    .unwrap();
+    assert!(!reading.finished && reading.problems.is_empty(), "kill {number}: {:?}", reading.problems);
+    assert!(next > 100 && reading.lost == 0, "kill {number}: {next} steps");
+    // A second between two flushes, and the rest for a disk and a machine that are busy.
+    let missing = killed.since(last);
+    assert!(missing < Duration::from_secs(5), "kill {number}: {missing:?} are missing");
+    println!("kill {number}: {next} steps, the last {:.2} s are missing", missing.as_secs_f64());
 }

@@ -386,15 +386,6 @@ class Faults(unittest.TestCase):
         laboratory.start_console("__name:=valet_two")
         self.holds(laboratory, "/valet_two")
 
-    def test_second_valet_of_the_same_name_ends_the_first(self):
-        laboratory = self.begin()
-        first = laboratory.console
-        laboratory.start_console()
-        until("the end of the first", lambda: first.poll() is not None)
-        begin = time.monotonic()
-        time.sleep(1.0)
-        self.assertEqual(laboratory.commands.since(begin), [])
-
     def test_liars_neither_move_nor_kill(self):
         laboratory = self.begin()
         kind, md5 = ENDPOINT_TYPE
