@@ -81,7 +81,10 @@ pub enum MotionRefusal {
         range: (f64, f64),
     },
     /// Two things would touch or come closer than allowed.
-    #[error("{} would come within {:.3} m of {}; at least {:.3} m is kept", .0.first, .0.distance, .0.second, .0.least)]
+    #[error(
+        "{} would come within {:.3} m of {}; at least {:.3} m is kept: a way that passes it {:.3} m further off would do",
+        .0.first, .0.distance, .0.second, .0.least, .0.least - .0.distance
+    )]
     Collision(Proximity),
     /// Another planner refused, did not answer, or answered something else than was asked for.
     #[error("the planner outside valet gave no way: {reason}")]

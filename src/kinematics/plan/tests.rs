@@ -107,14 +107,12 @@ fn a_person_in_the_way_is_refused_by_name_with_the_distance() {
     scene.person.push(BodyPart { name: "the person's head".into(), shape: Capsule::sphere(ahead, 0.05) });
     let refusal =
         plan_right_to(tip(Side::Right) + Vector::new(0.0, -0.15, 0.0), &scene, &MotionLimits::default()).unwrap_err();
-    match &refusal {
-        MotionRefusal::Collision(found) => {
-            assert_eq!(found.second, "the person's head");
-            assert!(found.distance < found.least);
-        }
-        other => panic!("{other:?}"),
-    }
-    assert!(refusal.to_string().contains("the person's head"), "{refusal}");
+    let MotionRefusal::Collision(found) = &refusal else { panic!("{refusal:?}") };
+    assert_eq!(found.second, "the person's head");
+    assert!(found.distance < found.least);
+    let words = refusal.to_string();
+    let further = format!("{:.3} m further off would do", found.least - found.distance);
+    assert!(words.contains("the person's head") && words.contains(&further), "{words}");
 }
 
 #[test]
