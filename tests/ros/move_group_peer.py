@@ -10,8 +10,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
+
+import peer
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
@@ -86,33 +89,71 @@ class Arm:
             link = joint.find("parent").get("link")
 
     def tip(self, joints):
-        pose, values = transform([0, 0, 0], [0, 0, 0]), iter(joints)
+        return self.tip_and_axes(joints)[0]
+
+    def tip_and_axes(self, joints):
+        """The tip's pose, and each joint's axis and place."""
+        pose, values, axes = transform([0, 0, 0], [0, 0, 0]), iter(joints), []
         for fixed, moving in self.steps:
             pose = times(pose, fixed)
             if moving:
+                axes.append(([pose[row][2] for row in range(3)], [pose[row][3] for row in range(3)]))
                 pose = times(pose, transform([0, 0, 0], [0, 0, next(values)]))
-        return pose
+        return pose, axes
 
-    def follow(self, joints, place):
-        """Joints that bring the tip to a place, at the orientation that it has."""
-        wanted = self.tip(joints)
-        for row in range(3):
-            wanted[row][3] = place[row]
+    def follow(self, joints, wanted):
+        """Joints near the given ones that bring the tip to a pose."""
         joints = list(joints)
         for _ in range(30):
-            here = self.tip(joints)
+            here, axes = self.tip_and_axes(joints)
             error = twist(here, wanted)
             if max(abs(value) for value in error) < 1e-7:
                 return joints
-            columns = []
-            for index in range(7):
-                moved = list(joints)
-                moved[index] += 1e-6
-                columns.append([value / 1e-6 for value in twist(here, self.tip(moved))])
+            end = [here[row][3] for row in range(3)]
+            columns = [cross(axis, [a - b for a, b in zip(end, place)]) + axis for axis, place in axes]
             gram = [[sum(c[i] * c[j] for c in columns) + (1e-8 if i == j else 0.0) for j in range(6)] for i in range(6)]
             solved = solve(gram, error)
             joints = [q + sum(c[i] * solved[i] for i in range(6)) for q, c in zip(joints, columns)]
         raise ValueError("no joints for this place")
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def posed(message):
+    """A pose message as a matrix."""
+    p, q = message.position, message.orientation
+    x, y, z, w = q.x, q.y, q.z, q.w
+    return [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), p.x],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), p.y],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), p.z],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+
+
+def between(start, end, share):
+    """A share of the way in a straight line with an even turn about one axis."""
+    turn = [[sum(end[i][k] * start[j][k] for k in range(3)) for j in range(3)] for i in range(3)]
+    axis = [turn[2][1] - turn[1][2], turn[0][2] - turn[2][0], turn[1][0] - turn[0][1]]
+    sine, cosine = math.hypot(*axis) / 2, (turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2
+    angle = math.atan2(sine, cosine) * share
+    pose = [list(row) for row in start]
+    if sine > 1e-9:
+        x, y, z = (value / (2 * sine) for value in axis)
+        c, s = math.cos(angle), math.sin(angle)
+        v = 1 - c
+        part = [
+            [c + x * x * v, x * y * v - z * s, x * z * v + y * s, 0.0],
+            [y * x * v + z * s, c + y * y * v, y * z * v - x * s, 0.0],
+            [z * x * v - y * s, z * y * v + x * s, c + z * z * v, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+        pose = times(part, start)
+    for row in range(3):
+        pose[row][3] = start[row][3] + (end[row][3] - start[row][3]) * share
+    return pose
 
 
 def twist(here, there):
@@ -142,41 +183,55 @@ import rostest  # noqa: E402
 MD5 = {"moveit_msgs": "c54b9430d97ea6816e0f7c7ffd3779b8", "moveit_msgs_melodic": "5c9a54219f0d91a804e7670bc0e118f1"}
 
 
+# Ways of one trial that must have been driven to their ends.
+LINES = 2
+
+
 class MoveGroup(unittest.TestCase):
     """What valet makes of each kind of move_group."""
 
     @classmethod
     def setUpClass(cls):
         rospy.init_node("move_group")
-        cls.asked = []
+        cls.asked, cls.ends, cls.driven = [], {}, 0
 
     def serve(self, source, fraction=1.0, code=1):
         kind = service_class(source)
         self.assertEqual(kind._md5sum, MD5[source], "the definition is MoveIt's own")
         response = kind._response_class
         self.asked[:] = []
+        self.ends.clear()
+        MoveGroup.driven = 0
 
         def plan(request):
             self.asked.append(request)
             arm = Arm(request.link_name)
             joints = dict(zip(request.start_state.joint_state.name, request.start_state.joint_state.position))
             here = [joints[name] for name in arm.names]
-            start = [arm.tip(here)[row][3] for row in range(3)]
-            end = request.waypoints[0].position
-            end = [end.x, end.y, end.z]
-            count = max(2, int(math.dist(start, end) / request.max_step) + 1)
+            self.note_driven(request.link_name, here)
+            begun = here
+            start, end = arm.tip(here), posed(request.waypoints[0])
+            length = math.dist(*([pose[row][3] for row in range(3)] for pose in (start, end)))
+            count = max(2, int(length / request.max_step) + 1)
             answer = response()
             answer.solution.joint_trajectory.joint_names = arm.names
             module = type(answer.solution.joint_trajectory).__module__
             point = sys.modules[module.replace("_JointTrajectory", "_JointTrajectoryPoint")].JointTrajectoryPoint
             for index in range(count + 1):
-                place = [a + (b - a) * index / count for a, b in zip(start, end)]
-                here = arm.follow(here, place) if index else here
+                here = arm.follow(here, between(start, end, index / count)) if index else here
                 answer.solution.joint_trajectory.points.append(point(positions=here))
+            if max(abs(a - b) for a, b in zip(begun, here)) > 0.05:
+                self.ends[request.link_name] = here
             answer.fraction, answer.error_code.val = fraction, code
             return answer
 
         return rospy.Service("/compute_cartesian_path", kind, plan)
+
+    def note_driven(self, link, here):
+        """Counts a way that the arm has been driven along: the next one is asked for from its very end."""
+        end = self.ends.pop(link, None)
+        if end and max(abs(a - b) for a, b in zip(end, here)) < 0.01:
+            MoveGroup.driven += 1
 
     def doctor(self):
         program = os.path.join(ROOT, "target", "debug", "valet")
@@ -216,6 +271,25 @@ class MoveGroup(unittest.TestCase):
         check = self.doctor()
         self.assertEqual(check["verdict"], "fault", check)
         self.assertIn("/compute_cartesian_path", check["value"])
+
+    def test_6_a_trial_is_driven_along_moveits_ways(self):
+        """The console in the simulated robot's world: each straight line of the trial is asked for, and then driven."""
+        service = self.serve("moveit_msgs")
+        valet = peer.Valet("console", "--headless", "--no-record", "--planner", "moveit")
+        try:
+            valet.await_line("the ROS master answers")
+            valet.until_accepted("enable", "enable the robot")
+            valet.until_accepted("start", "start the trial")
+            end = time.monotonic() + 4 * peer.PATIENCE
+            while self.driven < LINES and valet.process.poll() is None and time.monotonic() < end:
+                # A hold under load is continued, as an operator does.
+                if "hold" in valet.lines[-1]:
+                    valet.type("continue")
+                time.sleep(2.0)
+            self.assertGreaterEqual(self.driven, LINES, "\n".join(valet.lines[-30:]))
+        finally:
+            valet.end()
+            service.shutdown()
 
 
 if __name__ == "__main__":
