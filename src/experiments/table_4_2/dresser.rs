@@ -159,7 +159,7 @@ impl Watcher {
             self.travelled.push((now, sample.pose.translation.vector.into()));
         }
         let changes = effects.iter().filter_map(|effect| match effect {
-            Effect::Waypoint { side, change } if *side == self.side => Some(change.clone()),
+            Effect::Waypoint { side, change } if *side == self.side => Some(*change),
             _ => None,
         });
         let changes: Vec<_> = changes.collect();
