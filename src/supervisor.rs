@@ -10,6 +10,7 @@ mod compare;
 mod drive;
 pub mod effect;
 pub mod input;
+mod link;
 mod movement;
 mod operator;
 mod planner;
@@ -253,15 +254,6 @@ impl Supervisor {
         self.show_hold(now, cause);
     }
 
-    /// As [`Self::hold`]; where nothing moves that could be held, the operator is told all the same.
-    fn hold_or_warn(&mut self, now: Stamp, cause: &str) {
-        if self.mode == Mode::Running {
-            self.hold(now, cause);
-        } else {
-            self.log(now, Level::Warning, "link", cause.to_owned());
-        }
-    }
-
     fn see_endpoint(&mut self, now: Stamp, sample: &EndpointSample) {
         let position = sample.pose.translation.vector.into();
         let dressing = self.trial.as_ref().filter(|trial| trial.arm() == sample.side && trial.listens());
@@ -323,59 +315,6 @@ impl Supervisor {
         }
         self.show_body(now, pose);
         self.record_movement(pose);
-    }
-
-    fn see_link(&mut self, now: Stamp, event: &LinkEvent) {
-        match event {
-            LinkEvent::MasterLost => {
-                self.protection.watchdogs_mut().master(false);
-                self.hold_or_warn(now, "the ROS master does not answer: start roscore again, then continue");
-            }
-            LinkEvent::MasterBack => {
-                self.protection.watchdogs_mut().master(true);
-                self.log(now, Level::Information, "link", "the ROS master answers".into());
-            }
-            LinkEvent::ForeignPublisher { topic, node } => {
-                self.protection.watchdogs_mut().foreign_publisher(topic, node);
-                self.hold_or_warn(now, &format!("{node} publishes on {topic}: end it, then continue"));
-            }
-            LinkEvent::ForeignPublisherGone { topic, node } => {
-                self.protection.watchdogs_mut().foreign_publisher_gone(topic, node);
-                self.log(now, Level::Information, "link", format!("{node} publishes on {topic} no more"));
-            }
-            LinkEvent::WrongDefinition { topic, node, found, wanted } => {
-                let text = format!(
-                    "{node} publishes {topic} as {found}, valet reads {wanted}: nothing of it is used; bring the message packages of both to one version"
-                );
-                self.log(now, Level::Error, "link", text);
-            }
-            LinkEvent::CannotSee { reason } => {
-                self.log(now, Level::Warning, "pose", format!("the depth camera gives no pose: {reason}"));
-            }
-            LinkEvent::WorkerLost { name } => {
-                self.stop(now, &format!("the part of valet called {name} died"), Outcome::Fault);
-            }
-            LinkEvent::InboxOverflow { lost } => {
-                self.view.dropped_samples += lost;
-                self.log(
-                    now,
-                    Level::Warning,
-                    "link",
-                    format!("{lost} messages were lost: this computer is overloaded"),
-                );
-            }
-            LinkEvent::RecorderFailed { reason } => {
-                self.log(now, Level::Error, "recorder", format!("nothing is recorded any more: {reason}"));
-                self.hold(now, &format!("the trial is not recorded any more: {reason}"));
-            }
-            LinkEvent::RecorderOverflow { lost } => {
-                let text = format!("{lost} steps are missing in the record: this computer or its disk is overloaded");
-                self.log(now, Level::Warning, "recorder", text);
-            }
-            LinkEvent::ConsoleBeat => self.protection.watchdogs_mut().console(now),
-            LinkEvent::ConsoleLost => self.hold(now, "the console is gone"),
-        }
-        self.show_link(event);
     }
 
     /// Where both grippers and all joints are, as long as that is fresh.

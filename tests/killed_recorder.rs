@@ -3,7 +3,13 @@
 //! The process that is killed is this test itself, begun again: it records samples at the full rate of a robot. Twelve kills at
 //! random moments are part of the tests; `VALET_TEST_KILLS=200 cargo test --test killed_recorder` makes two hundred.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail loudly anywhere")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::cast_possible_truncation,
+    reason = "a test may fail loudly anywhere"
+)]
+#![allow(clippy::print_stdout, reason = "what is missing after each kill is to be read")]
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

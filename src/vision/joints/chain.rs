@@ -147,6 +147,7 @@ fn candidate(modes: &[Modes; Joint::ALL.len()], (place, number): (usize, usize))
 mod tests {
     use super::*;
 
+    #[expect(clippy::unnecessary_wraps, reason = "a place in a list of modes may be empty")]
     fn heap(x: f64, share: f64) -> Option<Mode> {
         Some(Mode { place: Point::new(x, 0.0, 1.0), share })
     }

@@ -53,7 +53,9 @@ fn shaded_cloth_keeps_its_label_and_single_wrong_pixels_are_mended() {
     // Light differs by a fifth from column to column.
     for (index, value) in bytes.iter_mut().enumerate() {
         let light = 0.8 + 0.2 * ((index / 3 % WIDTH) as f64 / WIDTH as f64);
-        *value = (f64::from(*value) * light) as u8;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "light only darkens")]
+        let shaded = (f64::from(*value) * light) as u8;
+        *value = shaded;
     }
     let labels = COLOURS.label(&image(&bytes), &foreground(), Facing::LowerEdge).unwrap();
     // The forearm's band lies ahead of the upper arm's, and the shoulder's column is the middle: only the right upper arm

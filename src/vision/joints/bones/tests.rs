@@ -1,3 +1,9 @@
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "pixels of a made-up picture lie inside it"
+)]
+
 use super::*;
 use crate::vision::foreground;
 use crate::vision::part::{OTHER, PARTS};
