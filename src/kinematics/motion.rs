@@ -88,7 +88,17 @@ impl PairMotion {
     /// path and never beyond its end. Its time starts at the halt. A halted motion may be halted again.
     #[must_use]
     pub fn halt(&self, elapsed: Duration) -> Self {
-        let state = self.timing.at(elapsed.as_secs_f64());
+        self.halt_slowed(elapsed, 1.0)
+    }
+
+    /// As `halt`, for a motion that runs at `ratio` of its planned speed (1: as planned; at 0 it stands already): less speed
+    /// is braked, so that no halt of a slowed motion takes longer than one at full speed. Not finite counts as 1.
+    #[must_use]
+    pub fn halt_slowed(&self, elapsed: Duration, ratio: f64) -> Self {
+        let ratio = if ratio.is_finite() { ratio.clamp(0.0, 1.0) } else { 1.0 };
+        let planned = self.timing.at(elapsed.as_secs_f64());
+        let state =
+            PathState { speed: planned.speed * ratio, acceleration: planned.acceleration * ratio * ratio, ..planned };
         let limits = PathLimits { acceleration: self.deceleration(&state), ..self.limits };
         // A profile that the generator refuses cannot be followed: then standing still is the only safe answer.
         let timing = PathTiming::stop(&state, &limits).unwrap_or_else(|_| PathTiming::rest(state.parameter));

@@ -166,15 +166,15 @@ impl ForceGuard {
     fn judge_catch(&mut self, now: Vector, sample: &GuardSample, seconds: f64) -> Verdict {
         let metres = sample.velocity.norm() * seconds;
         let mask = self.mask(sample);
+        let expected = if sample.expected_newtons.is_finite() { sample.expected_newtons } else { 0.0 };
         for (fit, limits) in [(&mut self.soft, &self.settings.catch), (&mut self.hard, &self.settings.hard_catch)] {
-            // The limits of growth were chosen on the whole force: what is expected is not taken off here.
-            fit.push(now, metres);
-            fit.judge(sample.stamp, limits.newtons_per_metre, limits.least_newtons + mask);
+            fit.push(now, expected, metres);
+            fit.judge(sample.stamp, limits, mask);
         }
         let limits = [(&self.soft, &self.settings.catch), (&self.hard, &self.settings.hard_catch)];
         let caught = limits.into_iter().find(|(fit, _)| fit.detection().is_some());
         caught.map_or_else(Verdict::clear, |(fit, limits)| {
-            let (stiffness, limit) = (fit.stiffness().unwrap_or_default(), limits.newtons_per_metre);
+            let (stiffness, limit) = fit.stiffness(limits).unwrap_or_default();
             let cause = format!("force grows by {stiffness:.0} N/m along the way, a catch from {limit:.0} N/m");
             Verdict::new(self.settings.catch_reaction, cause)
         })

@@ -5,8 +5,11 @@
 
 mod force;
 mod settings;
+mod watch;
+mod words;
 
 pub use settings::WatchSettings;
+pub use watch::Watch;
 
 use super::{Reaction, Verdict};
 use crate::assembly::RobotState;
@@ -15,45 +18,12 @@ use crate::geometry::Vector;
 use crate::sensing::{Freshness, FreshnessSettings};
 use crate::time::Stamp;
 use force::ForcePlausibility;
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
+use words::{MASTER_LOST, collision_words, cuff_words, foreign_words, late};
 
 /// An edge of `enabled` within this span of valet's own request is valet's own: the maker's tool waits 5 s for a disable.
 const OWN_EDGE_WITHIN: Duration = Duration::from_secs(5);
-
-/// What is said of a master that is lost.
-const MASTER_LOST: &str = "the ROS master does not answer: start roscore again, then continue";
-
-/// What is watched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Watch {
-    /// Force of an arm.
-    Force(Side),
-    /// Joint positions of an arm.
-    Joints(Side),
-    /// The robot's state.
-    RobotState,
-    /// The person's pose.
-    Pose,
-    /// The planner's answer.
-    Planner,
-    /// The console's heartbeat.
-    Console,
-    /// The supervisor's own beat, and the clock.
-    Tick,
-    /// The robot's own contact detection.
-    Collision(Side),
-    /// The cuff at an arm's wrist, by which a hand takes the arm over.
-    Cuff(Side),
-    /// The robot's motors, switched by somebody else.
-    Enable,
-    /// Another node that publishes where only valet may.
-    ForeignPublisher,
-    /// The ROS master.
-    Master,
-}
 
 /// Watches all inputs of a trial.
 ///
@@ -403,36 +373,6 @@ impl Watchdogs {
     pub const fn pose_stream(&self) -> &Freshness {
         &self.pose
     }
-}
-
-fn foreign_words(topic: &str, node: &str) -> String {
-    format!("{node} publishes on {topic}, where only valet may: end it, then continue")
-}
-
-fn collision_words(side: Side) -> String {
-    format!("the robot felt a contact on its {side} arm; by itself it would go on after two seconds")
-}
-
-fn cuff_words(side: Side) -> String {
-    format!("the {side} arm's cuff is squeezed, the arm follows a hand: let go of it, then continue")
-}
-
-/// A hold where a stream is not fresh.
-fn late(name: &str, stream: &Freshness, now: Stamp) -> Verdict {
-    if stream.is_fresh(now) {
-        return Verdict::clear();
-    }
-    let deadline = stream.settings().deadline.as_millis();
-    let cause = match (stream.last(), stream.age(now)) {
-        (None, _) => format!("{name}: nothing has come in yet"),
-        (_, None) => format!("{name}: the clock went back"),
-        _ if stream.is_ahead() => format!("{name}: its time stamps jumped ahead: check the robot's time service"),
-        (_, Some(age)) => {
-            let age = age.as_secs_f64() + stream.delay();
-            format!("{name}: {:.0} ms old, more than {deadline} ms", age * 1000.0)
-        }
-    };
-    Verdict::new(Reaction::Hold, cause)
 }
 
 #[cfg(test)]

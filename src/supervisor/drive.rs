@@ -12,9 +12,6 @@ use std::time::Duration;
 /// with the planned 2 rad/s² it stays below the 4 rad/s² at which the guard refuses a step.
 const RATIO_PER_SECOND: f64 = 1.0;
 
-/// The same while a halt makes haste: slowly enough that braking outweighs it from the first beat on.
-const HALT_RATIO_PER_SECOND: f64 = 0.5;
-
 /// What a drive does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
@@ -105,9 +102,11 @@ impl Drive {
             return;
         }
         if let Some(motion) = &self.motion {
-            self.motion = Some(motion.halt(self.elapsed));
+            self.motion = Some(motion.halt_slowed(self.elapsed, self.ratio));
             self.phase = Phase::Halting;
             self.elapsed = Duration::ZERO;
+            // The halt is planned from the speed that the arms have: its time is the clock's.
+            self.ratio = 1.0;
         }
     }
 
@@ -144,15 +143,12 @@ impl Drive {
         self.measured_seconds = seconds;
     }
 
-    /// A halt is never slowed down. Where the motion ran slowly, it begins at that speed, or the arms would jump to the planned
-    /// one; then it makes haste.
+    /// A halt is never slowed down.
     fn change_ratio(&mut self, seconds: f64) {
-        let (wanted, rate) = match self.phase {
-            Phase::Halting => (self.ratio.max(1.0), HALT_RATIO_PER_SECOND),
-            Phase::Holding | Phase::Moving => (self.wanted_ratio, RATIO_PER_SECOND),
-        };
-        let most = rate * seconds;
-        self.ratio += (wanted - self.ratio).clamp(-most, most);
+        if self.phase != Phase::Halting {
+            let most = RATIO_PER_SECOND * seconds;
+            self.ratio += (self.wanted_ratio - self.ratio).clamp(-most, most);
+        }
     }
 
     /// Lets `span` pass and says what came of it.
@@ -245,5 +241,40 @@ mod tests {
         assert!(next <= speed * 1.02, "{next} after {speed}");
         assert!(largest_acceleration(&mut drive, &limits, 80) < 1.5);
         assert_eq!(drive.phase(), Phase::Holding);
+    }
+
+    /// Beats from a halt until the arms stand, after a second at a ratio.
+    fn beats_to_stand(ratio: f64) -> usize {
+        let (mut drive, _) = moving();
+        drive.set_ratio(ratio);
+        for _ in 0..150 {
+            drive.tick(BEAT);
+        }
+        assert_eq!(drive.phase(), Phase::Moving, "still on its way");
+        drive.halt();
+        (1..1000).find(|_| drive.tick(BEAT) == Arrival::Halted).unwrap()
+    }
+
+    #[test]
+    fn s_39_a_halt_of_a_slowed_motion_takes_no_longer_than_one_at_full_speed() {
+        let full = beats_to_stand(0.9);
+        for ratio in [0.0, 0.05, 0.25, 0.5, 0.75] {
+            assert!(beats_to_stand(ratio) <= full + 1, "at {ratio}: {} beats, and {full}", beats_to_stand(ratio));
+        }
+    }
+
+    #[test]
+    fn s_39_a_motion_that_was_slowed_to_a_stand_does_not_go_on_in_a_halt() {
+        let (mut drive, _) = moving();
+        drive.set_ratio(0.0);
+        for _ in 0..150 {
+            drive.tick(BEAT);
+        }
+        let before = drive.joints().unwrap();
+        drive.halt();
+        for _ in 0..100 {
+            drive.tick(BEAT);
+        }
+        assert_eq!(drive.joints().unwrap(), before);
     }
 }

@@ -31,3 +31,11 @@ fn a_clock_that_goes_back_neither_stops_an_arm_for_a_beat_nor_hurries_it() {
         assert_eq!(torture(seed).violation, None, "seed {seed}");
     }
 }
+
+#[test]
+fn s_39_an_arm_that_was_slowed_before_a_hold_stands_in_time() {
+    // In these trials a hold met arms that ran at a part of their planned speed; braking them once took a beat too long.
+    for seed in [500_113, 500_234] {
+        assert_eq!(torture(seed).violation, None, "seed {seed}");
+    }
+}

@@ -2,8 +2,10 @@
 //!
 //! Time does not come in: a sleeve that catches is a spring, so its force grows with the way and not with the clock, at
 //! whatever speed. A bias that drifts over the whole way grows little within one window. A long window finds a soft catch
-//! in spite of noise, a short one a hard catch in time: the guard has both.
+//! in spite of noise, a short one a hard catch in time: the guard has both. Dressing itself pulls more from place to place:
+//! where it is expected to, the limit rises by a share of that growth; nothing is taken off the measured force.
 
+use super::settings::CatchLimits;
 use crate::geometry::Vector;
 use crate::sensing::Detection;
 use crate::time::Stamp;
@@ -18,7 +20,27 @@ const LEAST_SHARE: f64 = 0.9;
 struct Bin {
     metres: f64,
     force: Vector,
+    /// The pull that dressing itself was expected to need, in newtons.
+    expected: f64,
     samples: f64,
+}
+
+/// A fitted line.
+#[derive(Clone, Copy, Debug)]
+struct Growth {
+    /// Of the measured force, in N/m.
+    slope: Vector,
+    /// Of what was expected, in N/m, never below 0.
+    expected: f64,
+    /// The way it was taken over, in metres.
+    span: f64,
+}
+
+impl Growth {
+    /// The slope in N/m beyond which it is a catch.
+    fn limit(&self, limits: &CatchLimits) -> f64 {
+        limits.newtons_per_metre + limits.expected_share * self.expected
+    }
 }
 
 /// The fit along one arm's way.
@@ -27,7 +49,7 @@ pub(super) struct CatchFit {
     window_metres: f64,
     metres: f64,
     bins: VecDeque<Bin>,
-    fit: Option<(Vector, f64)>,
+    fit: Option<Growth>,
     detection: Option<Detection>,
 }
 
@@ -36,17 +58,18 @@ impl CatchFit {
         Self { window_metres, metres: 0.0, bins: VecDeque::new(), fit: None, detection: None }
     }
 
-    /// Takes the force beyond what is expected, `metres` further along the way.
-    pub(super) fn push(&mut self, beyond: Vector, metres: f64) {
+    /// Takes a force `metres` further along the way, and the newtons that dressing itself is expected to pull there.
+    pub(super) fn push(&mut self, force: Vector, expected: f64, metres: f64) {
         self.metres += metres;
         let width = self.window_metres / BINS;
         match self.bins.back_mut() {
             Some(bin) if self.metres - bin.metres < width => {
                 bin.samples += 1.0;
-                bin.force += (beyond - bin.force) / bin.samples;
+                bin.force += (force - bin.force) / bin.samples;
+                bin.expected += (expected - bin.expected) / bin.samples;
             }
             _ => {
-                self.bins.push_back(Bin { metres: self.metres, force: beyond, samples: 1.0 });
+                self.bins.push_back(Bin { metres: self.metres, force, expected, samples: 1.0 });
                 self.fit = self.fit_line();
             }
         }
@@ -55,8 +78,7 @@ impl CatchFit {
         }
     }
 
-    /// Slope as a vector in N/m and the way it was taken over in metres.
-    fn fit_line(&self) -> Option<(Vector, f64)> {
+    fn fit_line(&self) -> Option<Growth> {
         let span = self.metres - self.bins.front()?.metres;
         // The newest bin has one sample only and does not count.
         let complete = || self.bins.iter().take(self.bins.len().saturating_sub(1));
@@ -65,28 +87,31 @@ impl CatchFit {
         }
         let samples: f64 = complete().map(|bin| bin.samples).sum();
         let mean_metres = complete().map(|bin| bin.metres * bin.samples).sum::<f64>() / samples;
-        let mean_force = complete().map(|bin| bin.force * bin.samples).sum::<Vector>() / samples;
-        let (mut across, mut along) = (Vector::zeros(), 0.0);
+        let (mut across, mut expected, mut along) = (Vector::zeros(), 0.0, 0.0);
         for bin in complete() {
+            // Weighted by ways off their own mean: a constant part of the forces falls out of the sums.
             let off = bin.metres - mean_metres;
-            across += (bin.force - mean_force) * (off * bin.samples);
+            across += bin.force * (off * bin.samples);
+            expected += bin.expected * off * bin.samples;
             along += off * off * bin.samples;
         }
-        (along > 0.0).then(|| (across / along, span))
+        (along > 0.0).then(|| Growth { slope: across / along, expected: (expected / along).max(0.0), span })
     }
 
-    /// Growth along the way in N/m; `None` while too little way was made.
-    pub(super) fn stiffness(&self) -> Option<f64> {
-        self.fit.map(|(slope, _)| slope.norm())
+    /// Growth along the way and the limit beyond which it is a catch, both in N/m; `None` while too little way was made.
+    pub(super) fn stiffness(&self, limits: &CatchLimits) -> Option<(f64, f64)> {
+        self.fit.map(|growth| (growth.slope.norm(), growth.limit(limits)))
     }
 
-    /// Compares the growth with its limits: a slope in N/m, and newtons over the window. The first find stays as long as
-    /// it lasts.
-    pub(super) fn judge(&mut self, stamp: Stamp, newtons_per_metre: f64, least_newtons: f64) {
-        let caught =
-            self.fit.filter(|(slope, span)| slope.norm() > newtons_per_metre && slope.norm() * span > least_newtons);
-        self.detection = caught.map(|(slope, span)| {
-            let resistance = slope * span;
+    /// Compares the growth with its limits: a slope in N/m, and newtons over the window, which are `mask` more where the arm
+    /// accelerates. The first find stays as long as it lasts.
+    pub(super) fn judge(&mut self, stamp: Stamp, limits: &CatchLimits, mask: f64) {
+        let caught = self.fit.filter(|growth| {
+            let slope = growth.slope.norm();
+            slope > growth.limit(limits) && slope * growth.span > limits.least_newtons + mask
+        });
+        self.detection = caught.map(|growth| {
+            let resistance = growth.slope * growth.span;
             self.detection.unwrap_or(Detection { stamp, resistance, magnitude: resistance.norm() })
         });
     }

@@ -1,0 +1,35 @@
+//! S-14: a soft catch, in a whole trial.
+
+use super::room::{Room, unaltered};
+use valet::body::Side;
+use valet::geometry::Point;
+use valet::snapshot::TrialPhase;
+use valet::supervisor::{Effect, Input, Setup};
+
+#[test]
+fn s_14_a_soft_catch_that_the_window_does_not_see_moves_the_path_before_10_newtons() {
+    let mut setup = Setup::default();
+    // The thesis' detector is as good as off.
+    setup.settings.window.threshold_newtons = 15.0;
+    let mut room = Room::with(setup);
+    room.until(TrialPhase::Dressing);
+    room.beats(100, unaltered);
+    let (mut caught_at, mut most): (Option<Point>, f64) = (None, 0.0);
+    let told = room.told.len();
+    let spring = |input: Input| {
+        let mut input = input;
+        if let Input::Endpoint(sample) = &mut input
+            && sample.side == Side::Right
+        {
+            let place: Point = sample.pose.translation.vector.into();
+            let pull = (*caught_at.get_or_insert(place) - place) * 60.0;
+            most = most.max(pull.norm());
+            sample.wrench.force -= pull;
+        }
+        Some(input)
+    };
+    room.beats(250, spring);
+    let moved = room.told[told..].iter().any(|effect| matches!(effect, Effect::Waypoint { .. }));
+    assert!(moved, "the path gave way; the pull reached {most} N");
+    assert!(most < 10.0, "{most} N");
+}
