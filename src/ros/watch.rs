@@ -4,6 +4,7 @@
 //!   and our own subscribers are told the publishers, without touching streams that still run.
 //! - A publisher that lives but has gone silent is subscribed to anew: a broken link is never taken up again by itself.
 //! - A foreign publisher on a topic that commands the robot is named, and so is one that publishes by another definition.
+//! - A second node of this one's name, to which the master gave its place, is named as such a publisher.
 //!
 //! All of this waits for the network, so it has a thread of its own, away from screen, stop and supervisor.
 
@@ -54,6 +55,8 @@ pub(super) struct Watch {
     /// Asks publishers for their definitions; `None` where nothing is listened to.
     definitions: Option<Definitions>,
     foreign: BTreeSet<(String, String)>,
+    /// Another node took this one's name: what this one sends may reach nobody until it is started anew.
+    is_pushed_out: bool,
 }
 
 impl Watch {
@@ -70,6 +73,7 @@ impl Watch {
             guarded: Vec::new(),
             definitions: None,
             foreign: BTreeSet::new(),
+            is_pushed_out: false,
         }
     }
 
@@ -176,12 +180,18 @@ impl Watch {
 
     /// Names nodes that command the robot beside this one, each once as long as it stays.
     fn name_foreign(&mut self, graph: &Graph) {
-        let found: BTreeSet<_> = self
+        let mut found: BTreeSet<_> = self
             .guarded
             .iter()
             .flat_map(|topic| graph.publishers_of(topic).iter().map(move |node| (topic.clone(), node.clone())))
             .filter(|(_, node)| *node != self.node && !ROBOTS_OWN.contains(&node.as_str()))
             .collect();
+        self.is_pushed_out |= self.has_lost_its_name();
+        if let Some(topic) = self.guarded.first().filter(|_| self.is_pushed_out) {
+            // The graph shows the other one as if it were this one.
+            let node = format!("a second {} has taken this one's place (close this one): it", self.node);
+            found.insert((topic.clone(), node));
+        }
         for (topic, node) in found.difference(&self.foreign) {
             self.tell(LinkEvent::ForeignPublisher { topic: topic.clone(), node: node.clone() });
         }
@@ -189,6 +199,16 @@ impl Watch {
             self.tell(LinkEvent::ForeignPublisherGone { topic: topic.clone(), node: node.clone() });
         }
         self.foreign = found;
+    }
+
+    /// Whether the master has told this node to end because another one took its name.
+    fn has_lost_its_name(&self) -> bool {
+        if rosrust::is_ok() {
+            return false;
+        }
+        let parameters = [Value::text(&self.node), Value::text(&self.node)];
+        let holder = call_ros(&self.master, "lookupNode", &parameters, MASTER_LIMIT);
+        holder.is_ok_and(|uri| uri.as_text().is_some_and(|uri| uri != self.uri))
     }
 
     fn renew_silent(&mut self, graph: &Graph) {

@@ -386,6 +386,11 @@ class Faults(unittest.TestCase):
         laboratory.start_console("__name:=valet_two")
         self.holds(laboratory, "/valet_two")
 
+    def test_second_valet_of_the_same_name_is_named_and_the_first_holds(self):
+        laboratory = self.begin()
+        laboratory.start_console()
+        self.holds(laboratory, "a second /valet")
+
     def test_liars_neither_move_nor_kill(self):
         laboratory = self.begin()
         kind, md5 = ENDPOINT_TYPE
