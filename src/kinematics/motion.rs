@@ -37,7 +37,7 @@ pub struct PairMotion {
 pub(super) struct Braking {
     /// The highest acceleration of the parameter with which no gripper breaks its own limit.
     pub(super) grippers: f64,
-    /// What of each joint's acceleration (radians per second squared) is for speeding up and braking; the rest is for bends.
+    /// The highest acceleration of each joint in radians per second squared: the bends of the path need some of it.
     pub(super) joints: JointVector,
 }
 
@@ -105,20 +105,25 @@ impl PairMotion {
         Self { arms: self.arms.clone(), timing, ..*self }
     }
 
-    /// How hard the motion may brake from a state: what the part of the path asks for that it could need to stop. The limits of
-    /// the whole path are those of its steepest place, and a stop elsewhere would take longer than it must.
+    /// How hard the motion may brake from a state: what the part of the path asks for that it could need to stop, less what its
+    /// bends need at the speed that it has. The limits of the whole path are those of its steepest and its most bent place, half
+    /// for each, and a stop elsewhere would take up to twice as long as it must.
     fn deceleration(&self, state: &PathState) -> f64 {
         let whole = &self.limits;
         // No stop is longer than that with the limits of the whole path, from its highest acceleration on.
         let seconds = state.speed / whole.acceleration + 2.0 * whole.acceleration / whole.jerk;
         let ahead = (state.speed + state.acceleration.max(0.0) * seconds) * seconds;
+        // What speeds up when the halt begins does so until its acceleration has been taken back.
+        let speed = state.speed + state.acceleration.max(0.0).powi(2) / (2.0 * whole.jerk);
         let mut most = self.braking.grippers;
         for index in 0..=PLACES_AHEAD {
             let parameter = state.parameter + ahead * index as f64 / PLACES_AHEAD as f64;
             for side in Side::BOTH {
-                let slope = self.arms.get(side).path.at(parameter).slope;
-                let joints = slope.iter().zip(self.braking.joints.iter());
-                most = joints.fold(most, |most, (slope, acceleration)| most.min(acceleration / slope.abs()));
+                let point = self.arms.get(side).path.at(parameter);
+                let rates = point.slope.iter().zip(point.curvature.iter()).zip(self.braking.joints.iter());
+                most = rates.fold(most, |most, ((slope, curvature), acceleration)| {
+                    most.min((acceleration - curvature.abs() * speed * speed) / slope.abs())
+                });
             }
         }
         most.max(whole.acceleration)

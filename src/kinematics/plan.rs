@@ -222,7 +222,7 @@ pub(super) fn finish(
         right: ArmMotion { chain: model.arm(Side::Right).chain.clone(), path: paths.right },
     };
     let grippers = extent.iter().map(|(_, extent)| limits.acceleration / extent.metres).fold(MOST, f64::min) * HEADROOM;
-    let braking = Braking { grippers, joints: limits.joint_acceleration * (0.5 * HEADROOM) };
+    let braking = Braking { grippers, joints: limits.joint_acceleration * HEADROOM };
     Ok(PairMotion { arms, timing, limits: bounds, braking })
 }
 

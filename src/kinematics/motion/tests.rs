@@ -162,6 +162,22 @@ fn a_posture_move_ends_at_the_posture() {
 }
 
 #[test]
+fn s_39_a_fast_joint_is_brought_to_rest_within_what_a_hold_may_take() {
+    // A way without bends: all of a joint's acceleration is there for braking, from the highest speed of a wrist.
+    let mut target = start().right;
+    target[6] -= 2.5_f64.copysign(target[6]);
+    let targets = PerSide { left: None, right: Some(target) };
+    // The gripper's own turning speed does not bind.
+    let limits = MotionLimits { turning_speed: 3.0, ..MotionLimits::default() };
+    let motion = plan_postures(&MODEL, &Scene::default(), &start(), &targets, &limits).unwrap();
+    for tenths in 1..10 {
+        let halted = motion.halt(motion.duration().mul_f64(0.1 * f64::from(tenths)));
+        assert!(halted.duration() <= Duration::from_millis(750), "{:?} at {tenths} tenths", halted.duration());
+        assert!(largest_step_share(&halted) <= 1.0);
+    }
+}
+
+#[test]
 fn a_halt_ends_before_the_end_of_the_path_and_a_second_halt_is_no_worse() {
     let halted = MOTION.halt(MOTION.duration().mul_f64(0.4));
     let again = halted.halt(Duration::from_millis(50));
