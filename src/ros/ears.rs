@@ -1,8 +1,14 @@
-//! Ears for measurements: when a stop is published, and how long an empty message takes over loopback by itself.
+//! Ears and a voice for measurements: when a stop is published, a force that calls for one, and how long an empty message
+//! takes over loopback by itself.
 
 use super::error::RosError;
 use super::link::advertise;
-use super::message::std_msgs;
+use super::message::{baxter_core_msgs, std_msgs};
+use super::encode;
+use super::monitor::now;
+use crate::body::Side;
+use crate::geometry::{Pose, Vector, Wrench};
+use crate::supervisor::EndpointSample;
 use crossbeam_channel::{Receiver, bounded};
 use rosrust::{Publisher, Subscriber};
 use std::time::{Duration, Instant};
@@ -85,5 +91,40 @@ impl Ping {
         let sent = Instant::now();
         self.publisher.send(std_msgs::Empty {}).ok()?;
         self.heard.recv_timeout(patience).ok().map(|arrived| arrived.saturating_duration_since(sent))
+    }
+}
+
+/// Says, beside the robot, what force an arm feels.
+pub struct ForceVoice {
+    publisher: Publisher<baxter_core_msgs::EndpointState>,
+    side: Side,
+}
+
+impl std::fmt::Debug for ForceVoice {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("ForceVoice").field("side", &self.side).finish_non_exhaustive()
+    }
+}
+
+impl ForceVoice {
+    /// Publishes on the arm's end point topic, and waits until somebody listens.
+    ///
+    /// # Errors
+    /// Where the master does not register it, or nobody listens in time.
+    pub fn start(side: Side, patience: Duration) -> Result<Self, RosError> {
+        let topic = format!("/robot/limb/{side}/endpoint_state");
+        let publisher = advertise(&topic, 1)?;
+        publisher.wait_for_subscribers(Some(patience)).map_err(|error| RosError::registration(&topic, error))?;
+        Ok(Self { publisher, side })
+    }
+
+    /// One message with a force of so many newtons.
+    ///
+    /// # Errors
+    /// Where it cannot be sent.
+    pub fn say(&self, newtons: f64) -> Result<(), RosError> {
+        let wrench = Wrench { force: Vector::new(newtons, 0.0, 0.0), ..Wrench::default() };
+        let sample = EndpointSample { side: self.side, stamp: now(), pose: Pose::identity(), wrench };
+        self.publisher.send(encode::endpoint(&sample)).map_err(|error| RosError::registration("endpoint_state", error))
     }
 }

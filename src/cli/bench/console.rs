@@ -1,18 +1,14 @@
 //! `valet bench console`: what the console costs and how fast it stops, measured on the real node over TCPROS and a real
 //! pseudo-terminal.
 
+mod stops;
 mod terminal;
 
 use crate::cli::exit::Failure;
 use crate::cli::output::Output;
-use crate::cli::sim::ros_failure;
 use crate::console::frame_times;
-use crate::ros::ears::{Ping, StopEar};
-use crate::ros::{Node, WatchLink, environment, leave, node};
-use crate::snapshot::Snapshot;
+use crate::ros::{environment, node};
 use serde::Serialize;
-use std::io::{Read, Write};
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Stdio};
 use std::thread;
@@ -26,18 +22,13 @@ const LOOK: Duration = Duration::from_millis(20);
 /// The rings of the screen hold a minute: memory is judged after it.
 const WARM_UP: Duration = Duration::from_secs(75);
 
-/// The key and the word that clear a stop.
-const RESET: &[u8] = b"Rreset\r";
-/// How long a reset may take before it is asked for again.
-const ASK_AGAIN: Duration = Duration::from_secs(2);
-
 /// The console: frames, stop latency, processor time, bytes to the terminal, memory.
 #[derive(Debug, Clone, clap::Args)]
 pub(in crate::cli) struct Arguments {
     /// Frames of each screen.
     #[arg(long, default_value_t = 2000)]
     frames: usize,
-    /// How often the stop key is pressed.
+    /// How often the robot is stopped: by the key, and by a force over the hard cap.
     #[arg(long, default_value_t = 200)]
     stops: usize,
     /// For how many seconds each load is measured.
@@ -95,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let simulator = Simulator::start(port)?;
     measure_loads(&mut output, arguments)?;
-    measure_stops(&mut output, arguments)?;
+    stops::measure(&mut output, arguments.stops)?;
     measure_memory(&mut output, arguments)?;
     measure_idle(&mut output, arguments, simulator)
 }
@@ -180,102 +171,6 @@ fn load_over(terminal: &Terminal, span: Duration) -> Result<(Cost, Cost), Failur
     let before = terminal.cost()?;
     thread::sleep(span);
     Ok((before, terminal.cost()?))
-}
-
-/// The key, from the moment it is typed until a peer has the stop message; and the ways that are in it by themselves.
-fn measure_stops(output: &mut Output, arguments: &Arguments) -> Result<(), Failure> {
-    tell_latency(output, "loopback round trip of one byte", &tcp_round_trips(arguments.stops)?, None)?;
-    let (mut terminal, _folder) = console(30)?;
-    // The heaviest screen: a minute of both arms.
-    terminal.press(b"F---")?;
-    let own = Node::start("valet_bench").map_err(ros_failure)?;
-    let ping = Ping::start().map_err(ros_failure)?;
-    wait_until("the loopback message", || ping.once(LOOK).is_some())?;
-    let mut ways: Vec<Duration> = (0..arguments.stops).filter_map(|_| ping.once(PATIENCE)).collect();
-    ways.sort_unstable();
-    tell_latency(output, "one empty TCPROS message over loopback", &ways, None)?;
-    let ear = StopEar::listen().map_err(ros_failure)?;
-    let watch = WatchLink::connect("/valet").map_err(ros_failure)?;
-    let mut times = Vec::with_capacity(arguments.stops);
-    let mut newest = Snapshot::default();
-    for index in 0..arguments.stops {
-        times.push(one_stop(&mut terminal, &ear, &watch, &mut newest, index)?);
-    }
-    times.sort_unstable();
-    leave((ear, watch, ping, own));
-    tell_latency(output, "key to stop at a peer", &times, None)
-}
-
-fn one_stop(
-    terminal: &mut Terminal,
-    ear: &StopEar,
-    watch: &WatchLink,
-    newest: &mut Snapshot,
-    index: usize,
-) -> Result<Duration, Failure> {
-    let mut state = |wanted: &dyn Fn(&Snapshot) -> bool| {
-        if let Some(seen) = watch.newest() {
-            *newest = seen;
-        }
-        wanted(newest)
-    };
-    let is_clear = |seen: &Snapshot| {
-        seen.robot.state.is_some_and(|robot| !robot.stopped) && (!seen.stop.latched || seen.stop.is_reset)
-    };
-    let mut asked = Instant::now();
-    wait_until("the robot without a stop", || {
-        if asked.elapsed() > ASK_AGAIN {
-            // The screen had not seen the stop yet when it was asked to reset, and refused: the keys are typed again.
-            asked = Instant::now();
-            let _ = terminal.press(RESET);
-        }
-        state(&is_clear)
-    })?;
-    // At every phase of the beat and of the frames.
-    thread::sleep(Duration::from_millis(index as u64 * 7 % 40));
-    ear.forget();
-    let typed = Instant::now();
-    terminal.press(b" ")?;
-    let heard = ear.next(PATIENCE).ok_or_else(|| Failure::Fault("a stop was not heard".into()))?;
-    wait_until("the confirmed stop", || {
-        state(&|seen| seen.stop.confirmed_at.is_some() && seen.stop.latched && !seen.stop.is_reset)
-    })?;
-    // The console is told by the same snapshots, a frame later.
-    thread::sleep(Duration::from_millis(200));
-    terminal.press(RESET)?;
-    Ok(heard.saturating_duration_since(typed))
-}
-
-fn tcp_round_trips(count: usize) -> Result<Vec<Duration>, Failure> {
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(Failure::fault)?;
-    let address = listener.local_addr().map_err(Failure::fault)?;
-    let echo = thread::spawn(move || -> std::io::Result<()> {
-        let (mut peer, _) = listener.accept()?;
-        peer.set_nodelay(true)?;
-        let mut byte = [0];
-        while peer.read(&mut byte)? > 0 {
-            peer.write_all(&byte)?;
-        }
-        Ok(())
-    });
-    let round = || -> std::io::Result<Vec<Duration>> {
-        let mut stream = TcpStream::connect(address)?;
-        stream.set_nodelay(true)?;
-        let mut times = Vec::with_capacity(count);
-        let mut byte = [0];
-        for _ in 0..count {
-            let began = Instant::now();
-            stream.write_all(&byte)?;
-            stream.read_exact(&mut byte)?;
-            times.push(began.elapsed());
-        }
-        Ok(times)
-    };
-    let mut times = round().map_err(Failure::fault)?;
-    // The echo ends with the connection; how it ended says nothing.
-    let _ = echo.join();
-    times.sort_unstable();
-    Ok(times)
 }
 
 fn measure_memory(output: &mut Output, arguments: &Arguments) -> Result<(), Failure> {
