@@ -1,10 +1,10 @@
 //! Ears and a voice for measurements: when a stop is published, a force that calls for one, and how long an empty message
 //! takes over loopback by itself.
 
+use super::encode;
 use super::error::RosError;
 use super::link::advertise;
 use super::message::{baxter_core_msgs, std_msgs};
-use super::encode;
 use super::monitor::now;
 use crate::body::Side;
 use crate::geometry::{Pose, Vector, Wrench};
