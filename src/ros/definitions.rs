@@ -129,7 +129,9 @@ impl Asker {
             return Err(foreign("another transport than TCPROS"));
         };
         let mut stream = greeting::connect(&format!("{host}:{port}"), self.limit)?;
-        let asked = [("callerid", self.caller.as_str()), ("topic", topic), ("md5sum", "*"), ("type", "*")];
+        // rospy closes a node's older connection when a newer one of the same name comes: who asks needs a name of its own.
+        let caller = format!("{}_definitions", self.caller);
+        let asked = [("callerid", caller.as_str()), ("topic", topic), ("md5sum", "*"), ("type", "*")];
         let asked: Fields = asked.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
         let answer = greeting::exchange(&mut stream, &asked)?;
         match (answer.get("error"), answer.get("type"), answer.get("md5sum")) {
