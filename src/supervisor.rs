@@ -260,6 +260,7 @@ impl Supervisor {
         let passed = dressing.map(|trial| trial.metres_at(&position));
         let detection = self.protection.see_endpoint(now, sample, passed, &self.drive);
         self.show_force(sample);
+        self.stop_for_force(now);
         self.follow_sign_check(now, sample.side);
         let Some(detection) = detection else { return };
         let listens =
@@ -271,6 +272,14 @@ impl Supervisor {
                 self.protection.reading(sample.side).map(|reading| Yielding { resistance, force: reading.force });
             self.contact_since = Some(now);
             self.drive.halt();
+        }
+    }
+
+    /// A force that calls for a stop does so at once: the next sample may come before the next beat, and be a mild one.
+    fn stop_for_force(&mut self, now: Stamp) {
+        let force = self.protection.judge_force();
+        if self.mode != Mode::Idle && force.reaction == Reaction::Stop {
+            self.stop(now, &force.cause, Outcome::SafetyStop);
         }
     }
 

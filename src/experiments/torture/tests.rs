@@ -40,3 +40,9 @@ fn s_39_arms_that_were_slowed_or_fast_stand_in_time_after_a_hold() {
         assert_eq!(torture(seed).violation, None, "seed {seed}");
     }
 }
+
+#[test]
+fn s_13_a_force_that_calls_for_a_stop_is_not_forgotten_for_a_mild_one_that_follows_it() {
+    // In this trial both came within one beat.
+    assert_eq!(torture(2_003_600).violation, None);
+}

@@ -15,9 +15,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// The keys and the word that clear a stop, enable the robot, and start a trial.
-const RESET: &[u8] = b"Rreset\r";
-const ENABLE: &[u8] = b"Ey\r";
-const START: &[u8] = b"Sy\r";
+const RESET: [&[u8]; 1] = [b"Rreset\r"];
+const ENABLE: [&[u8]; 2] = [b"E", b"y\r"];
+const START: [&[u8]; 2] = [b"S", b"y\r"];
+/// The screen puts a question a frame after the key that asks for it.
+const UNTIL_THE_QUESTION: Duration = Duration::from_millis(300);
 /// How long an act may take before it is asked for again.
 const ASK_AGAIN: Duration = Duration::from_secs(2);
 /// A force beyond the cap of 35 N that no setting raises.
@@ -26,9 +28,7 @@ const NEWTONS_BEYOND_THE_CAP: f64 = 60.0;
 /// The ways that are in every stop by themselves; the key until a peer has the stop message; and a force message until then.
 pub(super) fn measure(output: &mut Output, stops: usize) -> Result<(), Failure> {
     tell_latency(output, "loopback round trip of one byte", &tcp_round_trips(stops)?, None)?;
-    let (mut terminal, _folder) = console(30)?;
-    // The heaviest screen: a minute of both arms.
-    terminal.press(b"F---")?;
+    let (terminal, _folder) = console(30)?;
     let own = Node::start("valet_bench").map_err(ros_failure)?;
     let ping = Ping::start().map_err(ros_failure)?;
     wait_until("the loopback message", || ping.once(LOOK).is_some())?;
@@ -38,10 +38,12 @@ pub(super) fn measure(output: &mut Output, stops: usize) -> Result<(), Failure> 
     let ear = StopEar::listen().map_err(ros_failure)?;
     let watch = WatchLink::connect("/valet").map_err(ros_failure)?;
     let mut bench = Stops { terminal, ear, watch, newest: Snapshot::default() };
+    // Without a trial force is nothing to stop for. Once stopped, it stays a trial, held.
+    bench.begin_trial()?;
+    // The heaviest screen: a minute of both arms.
+    bench.press(&[b"F---"])?;
     let times = bench.several(stops, |terminal| terminal.press(b" "))?;
     tell_latency(output, "key to stop at a peer", &times, None)?;
-    // Without a trial force is nothing to stop for.
-    bench.begin_trial()?;
     let voice = ForceVoice::start(Side::Right, PATIENCE).map_err(ros_failure)?;
     let times = bench.several(stops, |_| voice.say(NEWTONS_BEYOND_THE_CAP).map_err(ros_failure))?;
     tell_latency(output, "force over the cap to stop at a peer", &times, None)?;
@@ -74,7 +76,7 @@ impl Stops {
         index: usize,
         call: &mut impl FnMut(&mut Terminal) -> Result<(), Failure>,
     ) -> Result<Duration, Failure> {
-        self.ask_until("the robot without a stop", RESET, is_clear)?;
+        self.ask_until("the robot without a stop", &RESET, is_clear)?;
         // At every phase of the beat and of the frames.
         thread::sleep(Duration::from_millis(index as u64 * 7 % 40));
         self.ear.forget();
@@ -87,17 +89,25 @@ impl Stops {
         })?;
         // The console is told by the same snapshots, a frame later.
         thread::sleep(Duration::from_millis(200));
-        self.terminal.press(RESET)?;
+        self.press(&RESET)?;
         Ok(heard.saturating_duration_since(called))
     }
 
     fn begin_trial(&mut self) -> Result<(), Failure> {
-        self.ask_until("the robot without a stop", RESET, is_clear)?;
         let is_enabled = |seen: &Snapshot| seen.robot.state.is_some_and(|robot| robot.enabled);
-        self.ask_until("the enabled robot", ENABLE, is_enabled)?;
-        // After a stop the first Start lets the robot be commanded again, the next one begins the trial.
+        self.ask_until("the enabled robot", &ENABLE, is_enabled)?;
         let is_trial = |phase| !matches!(phase, TrialPhase::Idle | TrialPhase::Stopped | TrialPhase::Ended);
-        self.ask_until("a trial", START, |seen| is_trial(seen.trial.phase))
+        self.ask_until("a trial", &START, |seen| is_trial(seen.trial.phase))
+    }
+
+    fn press(&mut self, keys: &[&[u8]]) -> Result<(), Failure> {
+        for (index, part) in keys.iter().enumerate() {
+            if index > 0 {
+                thread::sleep(UNTIL_THE_QUESTION);
+            }
+            self.terminal.press(part)?;
+        }
+        Ok(())
     }
 
     /// The newest state of the node.
@@ -109,12 +119,12 @@ impl Stops {
     }
 
     /// Types keys until the state is as wanted. They are typed again where a screen that had not seen the newest state refused.
-    fn ask_until(&mut self, what: &str, keys: &[u8], is_so: impl Fn(&Snapshot) -> bool) -> Result<(), Failure> {
+    fn ask_until(&mut self, what: &str, keys: &[&[u8]], is_so: impl Fn(&Snapshot) -> bool) -> Result<(), Failure> {
         let mut asked = Instant::now();
         wait_until(what, || {
             if asked.elapsed() > ASK_AGAIN {
                 asked = Instant::now();
-                let _ = self.terminal.press(keys);
+                let _ = self.press(keys);
             }
             is_so(self.look())
         })
