@@ -9,6 +9,7 @@ mod dialog;
 mod draw;
 mod fixture;
 mod input;
+mod keyboard;
 mod keymap;
 mod measure;
 mod options;

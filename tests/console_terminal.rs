@@ -77,12 +77,17 @@ impl Session {
                 self.seen.drain(..place + text.len());
                 return;
             }
-            let last = self.seen.len().saturating_sub(1000);
-            assert!(start.elapsed() < PATIENCE, "{text:?} did not come; seen last: {:?}", self.seen.get(last..));
+            assert!(start.elapsed() < PATIENCE, "{text:?} did not come; seen last: {:?}", self.last());
             if let Ok(bytes) = self.output.recv_timeout(Duration::from_millis(100)) {
                 self.seen.push_str(&String::from_utf8_lossy(&bytes));
             }
         }
+    }
+
+    /// The last thousand letters that were seen.
+    fn last(&self) -> &str {
+        let place = self.seen.char_indices().rev().nth(999).map_or(0, |(place, _)| place);
+        &self.seen[place..]
     }
 
     /// Waits until the screen says that the robot has confirmed the stop. Only cells that change are written, so the words may
@@ -146,6 +151,57 @@ fn it_draws_resizes_stops_at_the_key_and_gives_the_terminal_back() {
     let (code, seen) = session.end();
     assert_restored(&seen);
     assert_eq!(code, 0);
+}
+
+#[test]
+fn no_stop_key_is_lost_behind_what_was_typed_before_it() {
+    let pasted = "x".repeat(3000);
+    let befores: [&[u8]; 9] = [
+        b"\x1b",
+        b"\x1b[",
+        b"\x1bO",
+        b"\x1b[1;",
+        b"\x1b[<0;1",
+        b"\x1b[200~",
+        // One byte of a terminal that speaks Latin-1, and one that begins a letter of UTF-8.
+        b"\xe4",
+        b"\xc3",
+        pasted.as_bytes(),
+    ];
+    for before in befores {
+        for stop in [b" ", b"\x03"] {
+            let mut session = Session::practise();
+            session.keys.write_all(&[before, stop].concat()).unwrap();
+            session.wait_for_the_confirmed_stop();
+            session.press("\u{3}\u{3}");
+            session.end();
+        }
+    }
+}
+
+// Drawn anew with a question to the terminal, whose answer would come among the keys, it would wait for that answer and leave.
+#[test]
+fn a_screen_drawn_anew_asks_the_terminal_nothing_and_loses_no_stop_key() {
+    let mut session = Session::practise();
+    session.press("\u{c} ");
+    session.wait_for_the_confirmed_stop();
+    session.press("\u{3}\u{3}");
+    let (_, seen) = session.end();
+    assert_restored(&seen);
+}
+
+#[test]
+fn no_stop_key_is_lost_that_comes_with_a_new_size() {
+    for cols in [100, 101, 102] {
+        let mut session = Session::practise();
+        session.signal("STOP");
+        session.terminal.resize(PtySize { rows: 40, cols, pixel_width: 0, pixel_height: 0 }).unwrap();
+        session.press(" ");
+        session.signal("CONT");
+        session.wait_for_the_confirmed_stop();
+        session.press("\u{3}\u{3}");
+        session.end();
+    }
 }
 
 #[test]

@@ -1,12 +1,21 @@
 //! The thread that reads keys: stop keys go to the latch before anything else sees them.
 //!
 //! It shares nothing with the drawing: a terminal that takes no more output, a slow frame or a full queue do not delay
-//! a stop.
+//! a stop. It reads the terminal itself and not through crossterm's events: those drop a key that comes together with a
+//! new size until the next key, and a Space that follows an Esc, half a sequence or a byte that is no UTF-8 for good.
 
 use super::StopHandle;
+use super::keyboard::Decoder;
 use super::keymap::{Chord, KeyMap};
 use crossbeam_channel::Sender;
-use ratatui::crossterm::event::{self, Event, KeyEventKind};
+use ratatui::crossterm::event::{Event, KeyEventKind};
+use ratatui::crossterm::terminal;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+use signal_hook::consts::SIGWINCH;
+use signal_hook::{SigId, low_level};
+use std::io::{self, Read, Stdin};
+use std::os::unix::net::UnixStream;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -14,6 +23,9 @@ use std::time::{Duration, Instant};
 
 /// How often the thread looks whether it should end, while no key comes.
 const PATIENCE: Duration = Duration::from_millis(100);
+
+/// How long after an Esc the rest of a sequence may come, as over a slow line; longer, and it was the Esc key.
+const ESCAPE_PATIENCE: Duration = Duration::from_millis(50);
 
 /// What the thread tells.
 #[derive(Debug)]
@@ -41,6 +53,7 @@ impl InputThread {
         let (told_to_leave, told_to_pause) = (Arc::clone(&leave), Arc::clone(&paused));
         let (renewed, renewals) = crossbeam_channel::unbounded();
         let mut keys = keys;
+        let mut ears = Ears::open()?;
         let body = move || {
             while !told_to_leave.load(Ordering::Relaxed) {
                 if let Some(newest) = renewals.try_iter().last() {
@@ -48,7 +61,7 @@ impl InputThread {
                 }
                 if told_to_pause.load(Ordering::Relaxed) {
                     thread::sleep(PATIENCE);
-                } else if !listen(&keys, stop.as_ref(), &heard) {
+                } else if !listen(&mut ears, &keys, stop.as_ref(), &heard) {
                     return;
                 }
             }
@@ -75,7 +88,8 @@ impl Drop for InputThread {
     fn drop(&mut self) {
         self.leave.store(true, Ordering::Relaxed);
         let Some(handle) = self.handle.take() else { return };
-        // On a terminal that is gone, crossterm's reading never returns: such a thread is left to end with the process.
+        // Where somebody else has read the key that was waited for, reading goes on until the next one: such a thread is left
+        // to end with the process.
         let patience = Instant::now();
         while !handle.is_finished() && patience.elapsed() < 3 * PATIENCE {
             thread::sleep(PATIENCE / 10);
@@ -87,27 +101,73 @@ impl Drop for InputThread {
     }
 }
 
-/// Waits for one event and passes it on; false where there is nothing more to wait for.
-fn listen(keys: &KeyMap, stop: &dyn StopHandle, heard: &Sender<Heard>) -> bool {
-    let event = match event::poll(PATIENCE) {
-        Ok(false) => return true,
-        Ok(true) => event::read(),
-        Err(error) => Err(error),
-    };
-    match event {
-        Ok(event) => {
-            if is_stop(keys, &event) {
-                stop.stop();
-            }
-            heard.send(Heard::Event(event)).is_ok()
+/// What the thread listens to.
+struct Ears {
+    keys: Stdin,
+    sizes: UnixStream,
+    signal: SigId,
+    decoder: Decoder,
+}
+
+impl Drop for Ears {
+    fn drop(&mut self) {
+        low_level::unregister(self.signal);
+    }
+}
+
+impl Ears {
+    fn open() -> io::Result<Self> {
+        let (sizes, told) = UnixStream::pair()?;
+        sizes.set_nonblocking(true)?;
+        told.set_nonblocking(true)?;
+        let signal = low_level::pipe::register(SIGWINCH, told)?;
+        Ok(Self { keys: io::stdin(), sizes, signal, decoder: Decoder::default() })
+    }
+
+    /// Waits for a moment; what was heard, keys before sizes. Each is asked about anew every time, so nothing that has
+    /// come at the same time as something else is forgotten.
+    fn listen(&mut self) -> io::Result<Vec<Event>> {
+        let patience = if self.decoder.is_waiting() { ESCAPE_PATIENCE } else { PATIENCE };
+        let patience = Timespec { tv_sec: 0, tv_nsec: patience.subsec_nanos().into() };
+        let mut waits = [PollFd::new(&self.keys, PollFlags::IN), PollFd::new(&self.sizes, PollFlags::IN)];
+        match poll(&mut waits, Some(&patience)) {
+            Ok(0) => return Ok(self.decoder.flush()),
+            Err(Errno::INTR) => return Ok(Vec::new()),
+            other => other?,
+        };
+        let [typed, resized] = waits.map(|wait| !wait.revents().is_empty());
+        let mut events = if typed { self.read_keys()? } else { Vec::new() };
+        if resized {
+            let mut signals = [0; 64];
+            while matches!(self.sizes.read(&mut signals), Ok(1..)) {}
+            let (columns, rows) = terminal::size()?;
+            events.push(Event::Resize(columns, rows));
         }
-        Err(error) if error.kind() == std::io::ErrorKind::Interrupted => true,
-        Err(_) => {
-            // Nobody is left to tell where the receiver is gone too.
-            let _ = heard.send(Heard::Lost);
-            false
+        Ok(events)
+    }
+
+    fn read_keys(&mut self) -> io::Result<Vec<Event>> {
+        let mut bytes = [0; 4096];
+        match rustix::io::read(&self.keys, &mut bytes) {
+            Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+            Ok(count) => Ok(self.decoder.take(bytes.get(..count).unwrap_or_default())),
+            Err(Errno::INTR | Errno::AGAIN) => Ok(Vec::new()),
+            Err(error) => Err(error.into()),
         }
     }
+}
+
+/// Waits for events and passes them on; false where there is nothing more to wait for.
+fn listen(ears: &mut Ears, keys: &KeyMap, stop: &dyn StopHandle, heard: &Sender<Heard>) -> bool {
+    let Ok(events) = ears.listen() else {
+        // Nobody is left to tell where the receiver is gone too.
+        let _ = heard.send(Heard::Lost);
+        return false;
+    };
+    if events.iter().any(|event| is_stop(keys, event)) {
+        stop.stop();
+    }
+    events.into_iter().all(|event| heard.send(Heard::Event(event)).is_ok())
 }
 
 /// True for an emergency stop, whatever is on the screen.

@@ -75,7 +75,10 @@ impl TerminalGuard {
     /// Forgets what is on the terminal, so that the next frame draws everything.
     pub(super) fn clear(&mut self) -> io::Result<()> {
         self.shown = Buffer::default();
-        self.screen.clear()
+        // Not `clear`, which asks the terminal where its cursor is and so reads keys itself: a stop among them would be lost,
+        // and a terminal that does not answer would be taken for one that is gone.
+        let size = self.screen.size()?;
+        self.screen.resize(Rect::from((Position::ORIGIN, size)))
     }
 
     /// Takes or gives back the mouse.
