@@ -34,7 +34,7 @@ pub use limits::{JOINT_TOLERANCE, JointLimits, MotionLimits, Workspace};
 pub use model::{ArmModel, BAXTER_URDF, ModelError, RobotModel, Tool};
 pub use motion::{PairMotion, Setpoint};
 pub use plan::{Target, plan_pair, plan_postures};
-pub use posture::{Leg, dressing_orientation, start_postures, start_postures_for, waiting_place};
+pub use posture::{Leg, dressing_orientation, dressing_postures, start_postures, start_postures_for, waiting_place};
 pub use refusal::MotionRefusal;
 pub use scene::{BodyBuild, BodyPart, Capsule, Scene};
 pub use timing::TimingError;

@@ -17,6 +17,10 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 /// How far the grippers point below the horizontal: of the lines in front of the robot that are possible at all, the largest
 /// share is so at 30° (99 %; 95 % at 0°, 91 % at 60°, 58 % at 90°).
 const PITCH: f64 = std::f64::consts::FRAC_PI_6;
+/// How far both grippers may be turned inwards, about the vertical, in degrees: a wrist that comes from further out passes the
+/// person's trunk with more room, as long as the arm still reaches and the grippers stay apart. What leaves the most room depends
+/// on the person, so each is tried.
+const INWARD_TURNS: [f64; 3] = [5.0, 10.0, 15.0];
 /// From a person's shoulder to where the other gripper waits behind it, in `base`, metres: behind and below, because the robot's
 /// forearms (radius 0.06 m) lie behind their grippers and have to pass each other when the leading gripper is at the shoulder.
 const WAITING_OFFSET: Vector3<f64> = Vector3::new(-0.20, 0.0, -0.28);
@@ -37,6 +41,12 @@ const STRIDE: usize = 4;
 #[must_use]
 pub fn dressing_orientation() -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_2 + PITCH)
+}
+
+/// [`dressing_orientation`] for both grippers, each turned inwards about the vertical by so many radians.
+fn turned_inwards(angle: f64) -> PerSide<UnitQuaternion<f64>> {
+    let turn = PerSide { left: -angle, right: angle };
+    turn.map(|_, angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), *angle) * dressing_orientation())
 }
 
 /// Where the gripper that does not lead waits, for a person's shoulder in `base`, metres.
@@ -83,11 +93,44 @@ pub fn start_postures_for(
     orientations: &PerSide<UnitQuaternion<f64>>,
     limits: &MotionLimits,
 ) -> Result<PerSide<JointVector>, MotionRefusal> {
+    roomiest_start(model, legs, orientations, limits).map(|start| start.joints)
+}
+
+/// [`start_postures_for`] with the grippers in the orientation for dressing, turned inwards as far as leaves the most room.
+///
+/// # Errors
+/// As [`start_postures_for`], with the grippers not turned.
+pub fn dressing_postures(
+    model: &RobotModel,
+    legs: &[Leg],
+    limits: &MotionLimits,
+) -> Result<PerSide<JointVector>, MotionRefusal> {
+    let start = |degrees: f64| roomiest_start(model, legs, &turned_inwards(degrees.to_radians()), limits);
+    let better = |best: Result<Start, _>, next: Result<Start, _>| match (best, next) {
+        (Ok(best), Ok(next)) if next.room > best.room => Ok(next),
+        (Err(_), Ok(next)) => Ok(next),
+        (best, _) => best,
+    };
+    INWARD_TURNS.into_iter().map(start).fold(start(0.0), better).map(|start| start.joints)
+}
+
+/// Start postures of both arms and the room that they leave.
+struct Start {
+    joints: PerSide<JointVector>,
+    /// The least along the way of the room in the joints and of the room between the arms and what surrounds them.
+    room: f64,
+}
+
+fn roomiest_start(
+    model: &RobotModel,
+    legs: &[Leg],
+    orientations: &PerSide<UnitQuaternion<f64>>,
+    limits: &MotionLimits,
+) -> Result<Start, MotionRefusal> {
     let stages: Vec<_> = legs.iter().flat_map(|leg| leg.stages.iter().copied()).collect();
     let ways = PerSide::from_fn(|side| way(&stages, side, orientations.get(side)));
     let spans: Vec<f64> =
         ways.left.lines().zip(ways.right.lines()).map(|(left, right)| left.spans().max(right.spans())).collect();
-    let scenes = scenes_of_knots(legs, &spans);
     let ranked = |side: Side| ranked_candidates(model.arm(side), ways.get(side), &spans, limits);
     let candidates = PerSide { left: ranked(Side::Left)?, right: ranked(Side::Right)? };
     let mut pairs: Vec<_> = candidates
@@ -96,27 +139,35 @@ pub fn start_postures_for(
         .flat_map(|left| candidates.right.iter().map(move |right| PerSide { left, right }))
         .collect();
     pairs.sort_by(|one, other| room_of(other).total_cmp(&room_of(one)));
-    let mut best: Option<(f64, &Pair)> = None;
+    clearest_pair(model, &scenes_of_knots(legs, &spans), &pairs, limits)
+}
+
+/// Of pairs with falling room in their joints, the one with the most room of either kind.
+fn clearest_pair(
+    model: &RobotModel,
+    scenes: &[&Scene],
+    pairs: &[Pair],
+    limits: &MotionLimits,
+) -> Result<Start, MotionRefusal> {
+    let mut best: Option<Start> = None;
     let (mut clear, mut refusal) = (0, None);
-    for pair in &pairs {
-        let to_beat = best.map_or(f64::NEG_INFINITY, |(room, _)| room);
-        // Pairs come with falling room in their joints: no later one can be better than this.
+    for pair in pairs {
+        let to_beat = best.as_ref().map_or(f64::NEG_INFINITY, |best| best.room);
+        // No later pair can be better than this.
         if clear >= PAIRS || room_of(pair) < to_beat {
             break;
         }
-        match clearance(model, &scenes, pair, limits, to_beat * COMFORTABLE) {
+        match clearance(model, scenes, pair, limits, to_beat * COMFORTABLE) {
             Ok(Some(metres)) => {
                 clear += 1;
-                best = Some((room_of(pair).min(metres / COMFORTABLE), pair));
+                let joints = pair.map(|_, candidate| candidate.start);
+                best = Some(Start { joints, room: room_of(pair).min(metres / COMFORTABLE) });
             }
             Ok(None) => {}
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
     }
-    match best {
-        Some((_, pair)) => Ok(pair.map(|_, candidate| candidate.start)),
-        None => Err(refusal.unwrap_or(MotionRefusal::NotFinite { side: Side::Left })),
-    }
+    best.ok_or(refusal.unwrap_or(MotionRefusal::NotFinite { side: Side::Left }))
 }
 
 /// The scene of every knot of the way: a line belongs to the leg that it leads into.

@@ -5,8 +5,8 @@ use super::{Effect, Mode, Supervisor};
 use crate::body::{PerSide, Side};
 use crate::geometry::{Point, Vector};
 use crate::kinematics::{
-    JointVector, Leg, MotionLimits, MotionRefusal, PairMotion, Scene, Target, dressing_orientation, plan_pair,
-    plan_postures, start_postures_for,
+    JointVector, Leg, MotionLimits, MotionRefusal, PairMotion, Scene, Target, dressing_postures, plan_pair,
+    plan_postures,
 };
 use crate::safety::Reaction;
 use crate::sequencing::{Order, Stage, Trial, TrialEvent};
@@ -79,11 +79,10 @@ impl Supervisor {
         let first_arm = self.setup.settings.trial.first_arm;
         let scenes = (self.scene(first_arm), self.scene(first_arm.other()));
         let stages = (trial.first_arm_stages(), trial.second_arm_stages());
-        let orientations = PerSide::from_fn(|_| dressing_orientation());
         let first = Leg { scene: &scenes.0, stages: &stages.0 };
         let second = Leg { scene: &scenes.1, stages: &stages.1 };
-        start_postures_for(&self.model, &[first, second], &orientations, limits)
-            .or_else(|_| start_postures_for(&self.model, &[first], &orientations, limits))
+        dressing_postures(&self.model, &[first, second], limits)
+            .or_else(|_| dressing_postures(&self.model, &[first], limits))
     }
 
     /// What the arms keep away from while the person's `arm` is dressed: the person as seen, but for the arms that the

@@ -1,5 +1,5 @@
 use super::*;
-use crate::kinematics::{PairMotion, Target, plan_pair};
+use crate::kinematics::{BodyPart, Capsule, PairMotion, Target, plan_pair};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -101,4 +101,42 @@ fn no_stages_or_stages_that_are_no_numbers_are_refused() {
     let mut stages = stages(Side::Right, paths()[0]);
     stages[1].right.z = f64::NAN;
     assert!(matches!(ask(&stages), Err(MotionRefusal::NotFinite { side: Side::Right })));
+}
+
+/// A person whose shoulder is where the way ends: the trunk hangs below it, towards the middle.
+fn seated_beside(path: [Point; 3]) -> Scene {
+    let top = path[2] + Vector3::new(0.0, 0.17, -0.12);
+    let shape = Capsule { start: top, end: top - Vector3::z() * 0.55, radius: 0.11 };
+    Scene { person: vec![BodyPart { name: "the person's trunk".into(), shape }], ..Scene::default() }
+}
+
+#[test]
+fn grippers_are_turned_inwards_where_that_leaves_more_room_beside_the_trunk() {
+    let model = RobotModel::baxter().unwrap();
+    let limits = MotionLimits::default();
+    let scene = seated_beside(paths()[0]);
+    let stages = stages(Side::Right, paths()[0]);
+    let legs = [Leg { scene: &scene, stages: &stages }];
+    let straight = roomiest_start(&model, &legs, &orientations(), &limits).unwrap();
+    let joints = dressing_postures(&model, &legs, &limits).unwrap();
+    let turned = PerSide::from_fn(|side| model.arm(side).forward(joints.get(side)).rotation);
+    let angle = turned.map(|_, rotation| rotation.angle_to(&dressing_orientation()).to_degrees());
+    assert!((angle.left - angle.right).abs() < 1e-3, "both are turned alike: {angle:?}");
+    assert!(angle.right > 4.0, "{angle:?}");
+    let points = turned.map(|_, rotation| rotation * Vector3::z());
+    assert!(points.left.y < 0.0 && points.right.y > 0.0, "towards the middle: {points:?}");
+    let chosen = roomiest_start(&model, &legs, &turned, &limits).unwrap();
+    assert!(chosen.room > straight.room, "{} against {}", chosen.room, straight.room);
+}
+
+#[test]
+fn a_way_that_no_turn_makes_possible_is_refused_as_without_a_turn() {
+    let model = RobotModel::baxter().unwrap();
+    let limits = MotionLimits::default();
+    let mut stages = stages(Side::Right, paths()[0]);
+    stages.push(PerSide { left: stages[2].left, right: Point::new(0.8, -2.5, 0.0) });
+    let scene = Scene::default();
+    let legs = [Leg { scene: &scene, stages: &stages }];
+    let refusal = dressing_postures(&model, &legs, &limits).unwrap_err();
+    assert_eq!(refusal, start_postures_for(&model, &legs, &orientations(), &limits).unwrap_err());
 }
