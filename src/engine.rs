@@ -10,7 +10,7 @@ use crate::body::Side;
 use crate::command::{Command, Origin};
 use crate::kinematics::{JointVector, Scene};
 use crate::snapshot::Snapshot;
-use crate::supervisor::{Effect, Input, LinkEvent, MovementOrder, PlanOrder, Supervisor};
+use crate::supervisor::{Effect, Input, LinkEvent, MovementOrder, PlanOrder, StartOrder, Supervisor};
 use crate::time::Stamp;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -77,8 +77,11 @@ impl Inbox {
     /// Puts an input into the inbox; where that is full, the input is lost and counted. What an operator asks and what was
     /// asked for once has room of its own: however many samples wait, it is not lost among them.
     pub fn offer(&self, input: Input) {
-        let queue =
-            if matches!(input, Input::Operator { .. } | Input::Fitted { .. }) { &self.orders } else { &self.samples };
+        let queue = if input.is_asked_for() {
+            &self.orders
+        } else {
+            &self.samples
+        };
         if let Err(TrySendError::Full(_)) = queue.try_send(input) {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
@@ -323,12 +326,30 @@ impl Worker {
         }
     }
 
-    /// Has a movement space fitted by a thread of its own: no beat waits for it.
+    /// Has a movement space fitted where no beat waits for it.
     fn fit(&mut self, order: MovementOrder) {
-        let (inbox, number) = (self.inbox.clone(), order.number);
-        let fit = thread::Builder::new().name("fit".into()).spawn(move || inbox.offer(order.answer()));
-        if let Err(error) = fit {
-            self.step(&Input::Fitted { number, space: Err(format!("this computer has no thread for it: {error}")) });
+        let number = order.number;
+        let failed = |reason| Input::Fitted { number, space: Err(reason) };
+        self.aside("fit", move || order.answer(), failed);
+    }
+
+    /// Has a posture to begin from searched where no beat waits for it.
+    fn find_start(&mut self, order: StartOrder) {
+        let (number, model) = (order.number, self.supervisor.model().clone());
+        let failed = |reason| Input::StartFound { number, joints: Err(reason) };
+        self.aside("start", move || order.answer(&model), failed);
+    }
+
+    /// Answers a question in a thread of its own.
+    fn aside(
+        &mut self,
+        name: &str,
+        answer: impl FnOnce() -> Input + Send + 'static,
+        failed: impl FnOnce(String) -> Input,
+    ) {
+        let inbox = self.inbox.clone();
+        if let Err(error) = thread::Builder::new().name(name.into()).spawn(move || inbox.offer(answer())) {
+            self.step(&failed(format!("this computer has no thread for it: {error}")));
         }
     }
 
@@ -346,6 +367,7 @@ impl Worker {
             Effect::Switch(request) if request != SwitchRequest::Stop && self.latch.requests() != self.stops_known => {}
             Effect::Plan(order) => self.outlet.plan(order),
             Effect::Switch(request) => self.outlet.switch(request),
+            Effect::FindStart(order) => self.find_start(*order),
             Effect::Fit(order) => self.fit(order),
             told => {
                 // Telling is best effort; the record has it all.

@@ -18,6 +18,7 @@ mod protection;
 mod running;
 mod settings;
 mod sign_check;
+mod start;
 mod switching;
 mod tuning;
 mod view;
@@ -27,6 +28,7 @@ pub use effect::{Effect, Effects, PlanOrder};
 pub use input::{EndpointSample, Input, JointSample, LinkEvent};
 pub use movement::MovementOrder;
 pub use settings::{PlannerKind, SettingsError, Setup, SupervisorSettings};
+pub use start::{StartLeg, StartOrder};
 pub use warm::WarmStart;
 
 use crate::assembly::{RobotState, StopSource, SwitchRequest};
@@ -151,6 +153,7 @@ impl Supervisor {
             Input::Operator { command, origin } => self.obey(now, command, *origin),
             Input::Link(event) => self.see_link(now, event),
             Input::Planned { number, ways } => self.see_planned(now, *number, ways),
+            Input::StartFound { number, joints } => self.see_start(now, *number, joints),
             Input::Fitted { number, space } => self.see_fitted(now, *number, space),
             Input::SetpointRefused { side, reason } => {
                 self.hold(now, &format!("the {side} arm's next position was refused: {reason}"));
@@ -170,6 +173,7 @@ impl Supervisor {
         self.obey_verdict(now, &inputs.stricter(self.tempered(now, force)));
         self.follow_switch(now);
         self.follow_movement(now);
+        self.await_start(now);
         if self.protection.stop().is_latched() {
             self.repeat_stop(now);
             return;

@@ -200,6 +200,10 @@ impl TortureTrial {
         match effect {
             Effect::Setpoint { side, joints } => self.send(world_time, now, *side, joints),
             Effect::Switch(request) => self.world.switch(*request, world_time),
+            Effect::FindStart(order) => {
+                let answer = order.answer(self.supervisor.model());
+                self.step(world_time, now, &answer);
+            }
             Effect::Stopped { .. } => self.result.stops += 1,
             Effect::Iteration { .. } => self.result.iterations += 1,
             Effect::TrialEnded { outcome, .. } => self.result.outcome = Some(*outcome),

@@ -129,6 +129,7 @@ impl VirtualTrial {
             match effect {
                 Effect::Setpoint { side, joints } => self.world.command_joints(*side, joints, now),
                 Effect::Switch(request) => self.world.switch(*request, now),
+                Effect::FindStart(order) => answers.push(order.answer(self.supervisor.model())),
                 Effect::Fit(order) => answers.push(order.answer()),
                 _ => {}
             }

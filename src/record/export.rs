@@ -154,9 +154,13 @@ impl CsvFiles {
             Input::Planned { ways: Err(reason), .. } => self.events.write_record([time, "not planned", reason]),
             Input::Link(event) => self.events.write_record([time, "link", &format!("{event:?}")]),
             Input::Cuff { side, squeezed: true } => self.events.write_record([time, "cuff", side.name()]),
-            Input::Tick | Input::Cuff { .. } | Input::Collision { .. } | Input::Body(_) | Input::Fitted { .. } => {
-                Ok(())
-            }
+            Input::StartFound { joints: Err(reason), .. } => self.events.write_record([time, "no start", reason]),
+            Input::Tick
+            | Input::Cuff { .. }
+            | Input::Collision { .. }
+            | Input::Body(_)
+            | Input::Fitted { .. }
+            | Input::StartFound { .. } => Ok(()),
         }
     }
 

@@ -3,7 +3,7 @@
 //! The engine carries effects out through guarded ports and hands them to the recorder. An effect is a decision, not a
 //! deed: whether a setpoint really left the node is told back as an input.
 
-use super::{MovementOrder, WarmStart};
+use super::{MovementOrder, StartOrder, WarmStart};
 use crate::assembly::SwitchRequest;
 use crate::body::{PerSide, Side};
 use crate::command::CommandReceipt;
@@ -45,6 +45,8 @@ pub enum Effect {
     },
     /// Ask the planner outside for ways; it answers with [`super::Input::Planned`].
     Plan(PlanOrder),
+    /// Find a posture to begin from where nobody waits for it; the answer comes as [`super::Input::StartFound`].
+    FindStart(Box<StartOrder>),
     /// Fit a movement space where nobody waits for it; the answer comes as [`super::Input::Fitted`].
     Fit(MovementOrder),
     /// Ask something of the robot's switch.

@@ -7,7 +7,7 @@ use crate::assembly::RobotState;
 use crate::body::{BodyPose, PerSide, Side};
 use crate::command::{Command, Origin};
 use crate::geometry::{Pose, Wrench};
-use crate::kinematics::Ways;
+use crate::kinematics::{JointVector, Ways};
 use crate::modelling::ArmSpace;
 use crate::time::Stamp;
 use serde::{Deserialize, Serialize};
@@ -56,6 +56,13 @@ pub enum Input {
         /// The ways, or why there are none.
         ways: Result<Ways, String>,
     },
+    /// The search for a posture to begin from has ended, as [`super::Effect::FindStart`] asked.
+    StartFound {
+        /// Which question.
+        number: u64,
+        /// Radians in the order s0, s1, e0, e1, w0, w1, w2 of both arms, or why there is no such posture.
+        joints: Result<PerSide<JointVector>, String>,
+    },
     /// A movement space was fitted, as [`super::Effect::Fit`] asked.
     Fitted {
         /// Which question.
@@ -70,6 +77,17 @@ pub enum Input {
         /// The guard's words.
         reason: String,
     },
+}
+
+impl Input {
+    /// True for what somebody asked, and for answers: they come once, and nothing repeats them.
+    #[must_use]
+    pub const fn is_asked_for(&self) -> bool {
+        matches!(
+            self,
+            Self::Operator { .. } | Self::Planned { .. } | Self::StartFound { .. } | Self::Fitted { .. }
+        )
+    }
 }
 
 /// An arm's end point as the robot reports it.

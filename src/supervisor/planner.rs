@@ -4,22 +4,31 @@
 //! While a question is open both arms stand still. An answer that nobody waits for any more is dropped.
 
 use super::effect::PlanOrder;
+use super::start::OpenStart;
 use super::{Effect, Mode, PlannerKind, Supervisor};
 use crate::body::PerSide;
 use crate::kinematics::{JointVector, MotionLimits, MotionRefusal, Target, Ways, plan_through};
 use crate::time::Stamp;
 
-/// What was asked, and how often.
+/// What was asked and not answered yet, and how often.
 #[derive(Debug, Default)]
 pub(super) struct Questions {
     asked: u64,
     open: Option<(PlanOrder, MotionLimits)>,
+    /// The posture to begin from, while it is searched.
+    pub(super) start: Option<OpenStart>,
 }
 
 impl Questions {
     /// True while an answer is waited for.
     pub(super) const fn is_open(&self) -> bool {
-        self.open.is_some()
+        self.open.is_some() || self.start.is_some()
+    }
+
+    /// The number of the next question.
+    pub(super) const fn next_number(&mut self) -> u64 {
+        self.asked += 1;
+        self.asked
     }
 }
 
@@ -37,8 +46,7 @@ impl Supervisor {
         targets: PerSide<Option<Target>>,
         limits: MotionLimits,
     ) {
-        self.questions.asked += 1;
-        let order = PlanOrder { number: self.questions.asked, start, targets };
+        let order = PlanOrder { number: self.questions.next_number(), start, targets };
         self.questions.open = Some((order, limits));
         self.protection.watchdogs_mut().planner_asked(now);
         self.effects.push(Effect::Plan(order));
@@ -47,6 +55,7 @@ impl Supervisor {
     /// Nobody waits for an answer any more.
     pub(super) fn forget_question(&mut self) {
         self.questions.open = None;
+        self.questions.start = None;
         self.protection.watchdogs_mut().planner_answered();
     }
 

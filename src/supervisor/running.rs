@@ -4,10 +4,7 @@ use super::drive::{Arrival, Phase};
 use super::{Effect, Mode, Supervisor};
 use crate::body::{PerSide, Side};
 use crate::geometry::{Point, Vector};
-use crate::kinematics::{
-    JointVector, Leg, MotionLimits, MotionRefusal, PairMotion, Scene, Target, dressing_postures, plan_pair,
-    plan_postures,
-};
+use crate::kinematics::{MotionRefusal, PairMotion, Scene, Target, plan_pair};
 use crate::safety::Reaction;
 use crate::sequencing::{Order, Stage, Trial, TrialEvent};
 use crate::snapshot::{Level, Outcome};
@@ -34,11 +31,16 @@ impl Supervisor {
         let mut limits = self.setup.settings.motion.clone();
         limits.minimum_duration = Duration::try_from_secs_f64(least_seconds).unwrap_or_default();
         let stands_back = self.trial.as_ref().is_some_and(|trial| matches!(trial.stage(), Stage::StandBack));
-        if self.plans_outside() && !stands_back {
+        if stands_back {
+            self.ask_start(now, start, limits);
+            return;
+        }
+        if self.plans_outside() {
             self.ask_planner(now, start, targets.map(|_, place| place.map(Target::position)), limits);
             return;
         }
-        let planned = self.plan(&start, &targets, &limits);
+        let targets = targets.map(|_, place| place.map(Target::position));
+        let planned = plan_pair(&self.model, &self.surroundings(), &start, &targets, &limits);
         self.begin(now, planned);
     }
 
@@ -54,35 +56,6 @@ impl Supervisor {
             }
             Err(refusal) => self.hold(now, &format!("the next move is not possible: {refusal}")),
         }
-    }
-
-    /// The motion that an order asks for: to the start posture at first, in straight lines after that.
-    fn plan(
-        &self,
-        start: &PerSide<JointVector>,
-        targets: &PerSide<Option<Point>>,
-        limits: &MotionLimits,
-    ) -> Result<PairMotion, MotionRefusal> {
-        let trial = self.trial.as_ref();
-        let scene = self.scene(trial.map_or(self.setup.settings.trial.first_arm, Trial::arm));
-        if let Some(trial) = trial.filter(|trial| matches!(trial.stage(), Stage::StandBack)) {
-            let posture = self.start_posture(trial, limits)?;
-            return plan_postures(&self.model, &scene, start, &posture.map(|_, joints| Some(*joints)), limits);
-        }
-        let targets = targets.map(|_, place| place.map(Target::position));
-        plan_pair(&self.model, &scene, start, &targets, limits)
-    }
-
-    /// Postures from which both of the person's arms can be dressed; where there are none, from which the first one can:
-    /// the second may be held elsewhere when its turn comes.
-    fn start_posture(&self, trial: &Trial, limits: &MotionLimits) -> Result<PerSide<JointVector>, MotionRefusal> {
-        let first_arm = self.setup.settings.trial.first_arm;
-        let scenes = (self.scene(first_arm), self.scene(first_arm.other()));
-        let stages = (trial.first_arm_stages(), trial.second_arm_stages());
-        let first = Leg { scene: &scenes.0, stages: &stages.0 };
-        let second = Leg { scene: &scenes.1, stages: &stages.1 };
-        dressing_postures(&self.model, &[first, second], limits)
-            .or_else(|_| dressing_postures(&self.model, &[first], limits))
     }
 
     /// What the arms keep away from while the person's `arm` is dressed: the person as seen, but for the arms that the

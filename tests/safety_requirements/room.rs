@@ -66,7 +66,7 @@ impl Room {
     }
 
     pub(super) fn step(&mut self, input: &Input) {
-        let mut sent = PerSide::default();
+        let (mut sent, mut answer) = (PerSide::default(), None);
         for effect in self.supervisor.step(self.now, input) {
             match &effect {
                 Effect::Setpoint { side, joints } => {
@@ -74,9 +74,13 @@ impl Room {
                     *sent.get_mut(*side) = Some(*joints);
                 }
                 Effect::Switch(request) => self.world.switch(*request, self.now),
+                Effect::FindStart(order) => answer = Some(order.answer(self.supervisor.model())),
                 _ => {}
             }
             self.told.push(effect);
+        }
+        if let Some(answer) = answer {
+            self.step(&answer);
         }
         if matches!(input, Input::Tick) {
             self.sent.push(sent);
