@@ -77,11 +77,7 @@ impl Inbox {
     /// Puts an input into the inbox; where that is full, the input is lost and counted. What an operator asks and what was
     /// asked for once has room of its own: however many samples wait, it is not lost among them.
     pub fn offer(&self, input: Input) {
-        let queue = if input.is_asked_for() {
-            &self.orders
-        } else {
-            &self.samples
-        };
+        let queue = if input.is_asked_for() { &self.orders } else { &self.samples };
         if let Err(TrySendError::Full(_)) = queue.try_send(input) {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }

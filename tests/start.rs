@@ -1,5 +1,13 @@
 //! The search for a posture to begin from: no beat waits for it, and nothing moves before it has ended.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a test may fail loudly anywhere"
+)]
+
 use std::time::Duration;
 use valet::body::PerSide;
 use valet::command::{Command, Origin};

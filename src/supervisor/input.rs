@@ -83,10 +83,7 @@ impl Input {
     /// True for what somebody asked, and for answers: they come once, and nothing repeats them.
     #[must_use]
     pub const fn is_asked_for(&self) -> bool {
-        matches!(
-            self,
-            Self::Operator { .. } | Self::Planned { .. } | Self::StartFound { .. } | Self::Fitted { .. }
-        )
+        matches!(self, Self::Operator { .. } | Self::Planned { .. } | Self::StartFound { .. } | Self::Fitted { .. })
     }
 }
 
