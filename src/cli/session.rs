@@ -27,6 +27,8 @@ use std::time::{Duration, Instant};
 
 /// A topic that has been silent for longer is shown as stale; what moves the robot has limits of its own.
 const TOPIC_DEADLINE_SECONDS: f64 = 0.5;
+/// How long that holds which is said once for all, in seconds: longer than any node runs.
+const FOR_GOOD_SECONDS: f64 = 1e9;
 
 /// How often whoever looks at the snapshots shows that it lives: four times within the watchdog's limit of a second.
 const CONSOLE_BEAT: Duration = Duration::from_millis(250);
@@ -75,7 +77,7 @@ struct ShellView {
 impl ShellView {
     fn fill_in(&self, snapshot: &mut Snapshot) {
         let topics = self.link.topics();
-        snapshot.topics = Shared::new(topics.iter().map(|report| topic_health(snapshot.now, report)).collect());
+        snapshot.topics = Shared::new(topics.iter().map(topic_health).collect());
         snapshot.master.uri.clone_from(&self.master);
         self.pose_source.clone_into(&mut snapshot.body.source);
         snapshot.recorder = self.recorder.as_deref().map(recorder_view).unwrap_or_default();
@@ -319,21 +321,18 @@ fn link_event(notice: RecorderNotice) -> LinkEvent {
     }
 }
 
-/// A topic as the console shows it; the link tells ages, the screen wants moments.
-fn topic_health(now: Stamp, report: &TopicReport) -> TopicHealth {
-    let last = report.age_seconds.and_then(|age| Duration::try_from_secs_f64(age).ok()).map(|age| {
-        let before = Duration::from_nanos(now.nanoseconds()).saturating_sub(age);
-        Stamp::ZERO + before
-    });
+/// A topic as the console shows it. What is said once for all holds for good.
+fn topic_health(report: &TopicReport) -> TopicHealth {
+    let deadline = if report.topic.ends_with("/tf_static") { FOR_GOOD_SECONDS } else { TOPIC_DEADLINE_SECONDS };
     TopicHealth {
         name: report.topic.clone(),
         kind: report.kind.clone(),
-        freshness: Freshness { last, deadline: TOPIC_DEADLINE_SECONDS },
+        freshness: Freshness { last: report.newest, deadline },
         rate: report.hertz,
         expected: report.expected_hertz,
         gap: report.gap_seconds,
         jitter: report.jitter_seconds,
-        stamp_lag: None,
+        stamp_lag: report.stamp_lag_seconds,
         drops: report.unusable,
         publishers: report.publishers.clone(),
         required: report.required,

@@ -23,7 +23,9 @@ pub struct TopicReport {
     pub topic: String,
     /// Its type.
     pub kind: String,
-    /// Seconds since the newest message arrived; `None` where none did.
+    /// When the newest message arrived; `None` where none did.
+    pub newest: Option<Stamp>,
+    /// Seconds since then.
     pub age_seconds: Option<f64>,
     /// Messages a second now.
     pub hertz: f64,
@@ -33,6 +35,8 @@ pub struct TopicReport {
     pub gap_seconds: f64,
     /// Standard deviation of the times between messages, in seconds.
     pub jitter_seconds: f64,
+    /// How far the newest message's own stamp lies behind its arrival, in seconds; `None` where it has none.
+    pub stamp_lag_seconds: Option<f64>,
     /// Messages that could not be used.
     pub unusable: u64,
     /// Nodes that publish it, as the master knows them.
@@ -113,9 +117,9 @@ impl Monitor {
         act(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// A message arrived.
-    pub(super) fn observe(&self, arrival: Stamp) {
-        self.with(|state| state.freshness.observe(arrival, None));
+    /// A message arrived, with a stamp of its own or none.
+    pub(super) fn observe(&self, arrival: Stamp, own: Option<Stamp>) {
+        self.with(|state| state.freshness.observe(arrival, own));
     }
 
     /// A message could not be used.
@@ -147,11 +151,13 @@ impl Monitor {
         self.with(|state| TopicReport {
             topic: self.resolved.clone(),
             kind: self.kind(),
+            newest: state.freshness.last(),
             age_seconds: state.freshness.age(now).map(|age| age.as_secs_f64()),
             hertz: state.freshness.rate(now),
             expected_hertz: self.expected_hertz,
             gap_seconds: state.freshness.gap(now),
             jitter_seconds: state.freshness.jitter(now),
+            stamp_lag_seconds: state.freshness.stamp_lag(),
             unusable: state.unusable,
             publishers: state.publishers.clone(),
             wrong: state.wrong.iter().map(|(node, found)| (node.clone(), found.clone())).collect(),
@@ -175,7 +181,7 @@ mod tests {
         assert!(!monitor.is_silent(at(5_000), Duration::from_secs(2)));
         monitor.set_publishers(vec!["/robot".into()]);
         assert!(monitor.is_silent(at(5_000), Duration::from_secs(2)), "published and never heard");
-        monitor.observe(at(5_000));
+        monitor.observe(at(5_000), None);
         assert!(!monitor.is_silent(at(6_000), Duration::from_secs(2)));
         assert!(monitor.is_silent(at(7_001), Duration::from_secs(2)));
     }
@@ -183,11 +189,15 @@ mod tests {
     #[test]
     fn a_report_tells_age_and_rate() {
         let monitor = Monitor::new("/robot/state", definition(), (80.0, 120.0), true);
-        (0..100_u64).for_each(|index| monitor.observe(Stamp::from_nanoseconds(index * 10_000_000)));
+        (0..100_u64).for_each(|index| {
+            let arrival = Stamp::from_nanoseconds(index * 10_000_000 + 2_000_000);
+            monitor.observe(arrival, Some(Stamp::from_nanoseconds(index * 10_000_000)));
+        });
         monitor.unusable();
         let report = monitor.report(Stamp::from_nanoseconds(1_000_000_000));
         assert!((report.hertz - 100.0).abs() < 2.0 && report.is_good(), "{report:?}");
-        assert_eq!((report.age_seconds, report.unusable), (Some(0.01), 1));
+        assert_eq!((report.age_seconds, report.unusable), (Some(0.008), 1));
+        assert!((report.stamp_lag_seconds.unwrap() - 0.002).abs() < 1e-9);
         assert!(!monitor.report(Stamp::from_nanoseconds(3_000_000_000)).is_good());
     }
 

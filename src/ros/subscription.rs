@@ -8,6 +8,7 @@ use super::error::RosError;
 use super::monitor::{Monitor, now};
 use super::node::resolved;
 use crate::supervisor::{Input, LinkEvent};
+use crate::time::Stamp;
 use rosrust::{Message, Subscriber};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -83,12 +84,24 @@ impl Subscription {
 }
 
 fn receive<T>(message: T, decode: &(impl Fn(T) -> Decoded + ?Sized), sink: &Sink, monitor: &Monitor) {
-    monitor.observe(now());
-    match catch_unwind(AssertUnwindSafe(|| decode(message))) {
+    let arrival = now();
+    let decoded = catch_unwind(AssertUnwindSafe(|| decode(message)));
+    monitor.observe(arrival, decoded.as_ref().ok().and_then(own_stamp));
+    match decoded {
         Ok(Decoded::Input(input)) => sink(input),
         Ok(Decoded::Kept) => {}
         Ok(Decoded::Unusable) => monitor.unusable(),
         Err(_) => sink(Input::Link(LinkEvent::WorkerLost { name: format!("the reader of {}", monitor.topic) })),
+    }
+}
+
+/// The stamp that a message carries itself.
+const fn own_stamp(decoded: &Decoded) -> Option<Stamp> {
+    match decoded {
+        Decoded::Input(Input::Endpoint(sample)) => Some(sample.stamp),
+        Decoded::Input(Input::Joints(sample)) => Some(sample.stamp),
+        Decoded::Input(Input::Body(pose)) => Some(pose.stamp),
+        _ => None,
     }
 }
 

@@ -104,7 +104,7 @@ impl fmt::Display for BreakCause {
             Self::Gap { seconds } => write!(formatter, "{:.0} ms between two force samples", seconds * 1000.0),
             Self::Reordered => formatter.write_str("a force sample older than the one before"),
             Self::NotFinite => formatter.write_str("a force that is not a finite number"),
-            Self::Reset => formatter.write_str("started anew with the motion"),
+            Self::Reset => formatter.write_str("emptied with the motion"),
         }
     }
 }

@@ -308,11 +308,13 @@ mod tests {
         let report = |age_seconds, hertz, required| TopicReport {
             topic: "/t".into(),
             kind: "k".into(),
+            newest: None,
             age_seconds,
             hertz,
             expected_hertz: (80.0, 120.0),
             gap_seconds: 0.0,
             jitter_seconds: 0.0,
+            stamp_lag_seconds: None,
             unusable: 0,
             publishers: vec![],
             wrong: vec![],

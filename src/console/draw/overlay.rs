@@ -26,7 +26,10 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
 /// Draws the open dialog, if there is one.
 pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let Some(dialog) = &scene.view.dialog else { return };
-    let width = area.width.saturating_sub(4).clamp(20, if matches!(dialog, Dialog::Help { .. }) { 100 } else { 72 });
+    let width = area
+        .width
+        .saturating_sub(4)
+        .clamp(20, if matches!(dialog, Dialog::Help { .. } | Dialog::Choice { .. }) { 116 } else { 72 });
     let inner = width.saturating_sub(4);
     let (title, lines) = contents(scene, dialog, inner);
     // State line and first row of the banner stay in sight.
@@ -86,6 +89,9 @@ fn contents<'a>(scene: &Scene<'a>, dialog: &'a Dialog, width: u16) -> (String, V
                 ])
             };
             let mut lines: Vec<_> = items.iter().enumerate().map(row).collect();
+            // What is cut off in the list stands whole below it.
+            let cut = items.get(*selected).filter(|item| item.note.chars().count() + 26 > usize::from(width));
+            lines.extend(cut.into_iter().flat_map(|item| wrapped(scene, Role::Text, &item.note, width)));
             if items.is_empty() {
                 lines.push(line(scene.look, Role::Late, "nothing to choose from"));
             }
@@ -95,7 +101,7 @@ fn contents<'a>(scene: &Scene<'a>, dialog: &'a Dialog, width: u16) -> (String, V
         Dialog::Text { purpose, typed } => (" Text ".into(), text_field(scene, *purpose, typed)),
         Dialog::Settings { selected } => (" Settings ".into(), settings(scene, *selected)),
         Dialog::Help { filter, typing, .. } => {
-            (format!(" Keys: {} ", scene.view.screen.name()), help(scene, filter, *typing))
+            (format!(" Keys: {} ", scene.view.screen.name()), help(scene, filter, *typing, width))
         }
     }
 }
@@ -173,8 +179,11 @@ fn settings<'a>(scene: &Scene<'a>, selected: usize) -> Vec<Line<'a>> {
     lines
 }
 
+/// Columns of the keys in the help.
+const KEY_WIDTH: u16 = 13;
+
 /// The key table, the keys of this screen first.
-fn help<'a>(scene: &Scene<'a>, filter: &str, typing: bool) -> Vec<Line<'a>> {
+fn help<'a>(scene: &Scene<'a>, filter: &str, typing: bool, width: u16) -> Vec<Line<'a>> {
     let screen = scene.view.screen;
     let found = |entry: &&Entry| {
         let wanted = filter.to_lowercase();
@@ -189,9 +198,9 @@ fn help<'a>(scene: &Scene<'a>, filter: &str, typing: bool) -> Vec<Line<'a>> {
     let own = |entry: &&&Entry| entry.scope.contains(screen) && entry.scope.words() != "everywhere";
     let everywhere = |entry: &&&Entry| entry.scope.words() == "everywhere";
     let elsewhere = |entry: &&&Entry| !entry.scope.contains(screen);
-    push_group(scene, &mut lines, "on this screen", entries.iter().filter(own));
-    push_group(scene, &mut lines, "everywhere", entries.iter().filter(everywhere));
-    push_group(scene, &mut lines, "on other screens", entries.iter().filter(elsewhere));
+    push_group(scene, &mut lines, "on this screen", entries.iter().filter(own), width);
+    push_group(scene, &mut lines, "everywhere", entries.iter().filter(everywhere), width);
+    push_group(scene, &mut lines, "on other screens", entries.iter().filter(elsewhere), width);
     lines
 }
 
@@ -200,6 +209,7 @@ fn push_group<'a, 'b>(
     lines: &mut Vec<Line<'a>>,
     name: &'static str,
     entries: impl Iterator<Item = &'b &'b Entry>,
+    width: u16,
 ) {
     let mut rows = entries.peekable();
     if rows.peek().is_some() {
@@ -209,12 +219,14 @@ fn push_group<'a, 'b>(
         let keys = scene.keys.keys_of(entry.action).join(" ");
         let place = if name == "on other screens" { format!(" [{}]", entry.scope.words()) } else { String::new() };
         let guard = if entry.guard.words().is_empty() { String::new() } else { format!(" ({})", entry.guard.words()) };
-        let not_now = refusal(entry.action, scene.live).map_or_else(String::new, |reason| format!(" now: {reason}"));
-        lines.push(Line::from(vec![
-            span(scene.look, Role::Key, format!(" {keys:<12}")),
-            span(scene.look, Role::Text, entry.text),
-            span(scene.look, Role::Muted, format!("{guard}{place}")),
-            span(scene.look, Role::Late, not_now),
-        ]));
+        let not_now = refusal(entry.action, scene.live).map_or_else(String::new, |reason| format!("now: {reason}"));
+        let room = width.saturating_sub(KEY_WIDTH).max(1);
+        let rows = wrap(&format!("{}{guard}{place}", entry.text), room).into_iter().map(|text| (Role::Text, text));
+        let reasons = wrap(&not_now, room).into_iter().filter(|text| !text.is_empty()).map(|text| (Role::Late, text));
+        for (index, (role, text)) in rows.chain(reasons).enumerate() {
+            let keys = if index == 0 { keys.as_str() } else { "" };
+            let keys = format!(" {keys:<width$}", width = usize::from(KEY_WIDTH) - 1);
+            lines.push(Line::from(vec![span(scene.look, Role::Key, keys), span(scene.look, role, text)]));
+        }
     }
 }

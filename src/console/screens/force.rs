@@ -55,22 +55,21 @@ fn heading<'a>(scene: &Scene<'a>, side: Side) -> Line<'a> {
     } else {
         format!("full {}", force.window.length)
     };
-    let broken =
-        if force.window.broken.is_empty() { String::new() } else { format!(", broken by {}", force.window.broken) };
+    let broken = if force.window.broken.is_empty() { String::new() } else { format!(", last {}", force.window.broken) };
     let tare = if force.tare.is_some() { "" } else { " · not tared" };
     // What must not be cut off stands first: whether the force lives at all.
     let mut spans = vec![
         span(look, role, format!(" {side} gripper ")),
-        span(look, Role::Muted, format!(" raw, last {} ", seconds(scene.view.span))),
+        span(look, Role::Muted, format!("raw {} ", seconds(scene.view.span))),
     ];
     if force.freshness.is_fresh(live.now) {
-        spans.push(span(look, Role::Muted, format!("· age {}", age(&force.freshness, live.now, "-"))));
+        spans.push(span(look, Role::Muted, format!("· age {:<5}", age(&force.freshness, live.now, "-"))));
     } else {
         let text = format!(" {} ", stale(&force.freshness, live.now, look.glyphs().none));
         spans.push(span(look, Role::Stale, text));
     }
     spans.push(selected_mark(scene, side, force));
-    spans.push(span(look, Role::Text, format!(" | {} {window}{broken}{tare}", force.window.detector)));
+    spans.push(span(look, Role::Text, format!(" | {}, {window}{tare}{broken}", force.window.detector)));
     Line::from(spans)
 }
 
@@ -78,7 +77,7 @@ fn selected_mark<'a>(scene: &Scene<'a>, side: Side, force: &ForceView) -> ratatu
     let shown = &scene.shown().sides.get(side).force;
     let mark = scene.view.mark.filter(|_| side == scene.view.side);
     let Some(detection) = mark.and_then(|mark| shown.detections.iter().rev().nth(mark)) else {
-        return span(scene.look, Role::Muted, format!(" · resistances: {}", force.detections.len()));
+        return span(scene.look, Role::Muted, format!(" · {} found", force.detections.len()));
     };
     let waypoint = detection.waypoint.map_or_else(String::new, |index| format!(" at way-point {index}"));
     let text =

@@ -11,6 +11,9 @@ use ratatui::text::Line;
 /// Bytes below which the disk is said to be nearly full: about ten minutes with depth images.
 const LITTLE_DISK: u64 = 5_000_000_000;
 
+/// Seconds between a message's own stamp and its arrival above which the computers' clocks, or the way, deserve a look.
+const MUCH_LAG: f64 = 0.1;
+
 /// Draws the screen.
 pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let checks = check_lines(scene);
@@ -71,7 +74,7 @@ fn link_lines<'a>(scene: &Scene<'a>) -> Vec<Line<'a>> {
 
 fn recorder_line(scene: &Scene<'_>) -> (String, Role) {
     let (recorder, glyphs) = (&scene.live.recorder, scene.look.glyphs());
-    let disk = recorder.disk_free.map_or_else(String::new, |free| format!(" · {} free on disk", bytes(free)));
+    let disk = recorder.disk_free.map_or_else(String::new, |free| format!(" · {} free", bytes(free)));
     let drops = if recorder.drops > 0 { format!(" · {} events lost", recorder.drops) } else { String::new() };
     let little = recorder.disk_free.is_some_and(|free| free < LITTLE_DISK);
     if !recorder.fault.is_empty() {
@@ -79,7 +82,7 @@ fn recorder_line(scene: &Scene<'_>) -> (String, Role) {
     } else if recorder.on {
         let role = if little || recorder.drops > 0 { Role::Late } else { Role::Good };
         let symbol = if role == Role::Late { glyphs.late } else { glyphs.good };
-        (format!("{symbol} ON {} · {}{drops}{disk}", recorder.file, bytes(recorder.bytes)), role)
+        (format!("{symbol} ON {}{drops}{disk} · {}", bytes(recorder.bytes), recorder.file), role)
     } else {
         (format!("{} OFF{disk}", glyphs.late), Role::Late)
     }
@@ -93,10 +96,10 @@ fn topic_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
     let heading = format!("Topics: {} of {}, worst first", topics.len(), live.topics.len());
     let mut lines = vec![title(look, heading)];
     let columns = format!(
-        "{:<8}{:<44}{:<5}{:>6} {:>8} {:>7} {:>7} {:>7} {:>5}",
-        "state", "topic", "need", "rate/s", "expected", "age", "gap", "jitter", "drops"
+        "{:<8}{:<44}{:<4}{:>5} {:>7} {:>5} {:>5} {:>6} {:>6} {:>5}",
+        "state", "topic", "need", "Hz", "band", "age", "gap", "jitter", "lag", "drops"
     );
-    lines.push(line(look, Role::Muted, if width >= 104 { format!("{columns} publisher") } else { columns }));
+    lines.push(line(look, Role::Muted, if width >= 112 { format!("{columns} publisher") } else { columns }));
     let skipped = scene.view.row.min(topics.len().saturating_sub(1));
     lines.extend(topics.into_iter().skip(skipped).map(|topic| topic_line(scene, topic)));
     lines
@@ -109,18 +112,26 @@ fn topic_line<'a>(scene: &Scene<'a>, topic: &TopicHealth) -> Line<'a> {
     let (symbol, role) = if topic.is_absent() { (look.glyphs().stale, Role::Muted) } else { look.verdict(verdict) };
     let word = if topic.is_absent() { "none" } else { verdict_word(verdict) };
     let live = verdict < Verdict::Stale;
+    let lag = topic.stamp_lag.map_or_else(|| none.to_owned(), signed_seconds);
+    let is_late = topic.stamp_lag.is_some_and(|lag| lag.abs() > MUCH_LAG);
     let number = |text: String| if live { text } else { none.to_owned() };
     let publishers = if topic.publishers.is_empty() { "nobody".into() } else { topic.publishers.join(" ") };
     let needed = if topic.required { "yes" } else { "no" };
     Line::from(vec![
         span(look, role, format!("{symbol} {word:<6}")),
-        span(look, Role::Text, format!("{:<44}{needed:<5}", topic.name)),
-        span(look, Role::Text, format!("{:>6} {:>8} ", number(format!("{:.1}", topic.rate)), expected(topic))),
-        span(look, role, format!("{:>7}", age(&topic.freshness, now, none))),
-        span(look, Role::Text, format!(" {:>7} {:>7}", number(seconds(topic.gap)), number(seconds(topic.jitter)))),
+        span(look, Role::Text, format!("{:<44}{needed:<4}", topic.name)),
+        span(look, Role::Text, format!("{:>5} {:>7} ", number(format!("{:.1}", topic.rate)), expected(topic))),
+        span(look, role, format!("{:>5}", age(&topic.freshness, now, none))),
+        span(look, Role::Text, format!(" {:>5} {:>6}", number(seconds(topic.gap)), number(seconds(topic.jitter)))),
+        span(look, if is_late { Role::Late } else { Role::Text }, format!(" {:>6}", number(lag))),
         span(look, if topic.drops > 0 { Role::Late } else { Role::Muted }, format!(" {:>5}", topic.drops)),
         span(look, Role::Muted, format!(" {publishers}")),
     ])
+}
+
+/// A span of time that may lie ahead, as a stamp of a clock that goes before ours.
+fn signed_seconds(value: f64) -> String {
+    if value < 0.0 { format!("-{}", seconds(-value)) } else { seconds(value) }
 }
 
 /// The rates that are expected, in words where any rate is right.

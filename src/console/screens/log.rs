@@ -2,18 +2,25 @@
 
 use crate::console::draw::Scene;
 use crate::console::theme::Role;
-use crate::console::widgets::text::{clock, fill, line, span, title};
+use crate::console::widgets::text::{clock, fill, line, span, title, wrap};
 use crate::snapshot::{Level, LogLine};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
+/// Columns before the text of a line: number, time, level and source.
+const LABEL_WIDTH: u16 = 38;
+
 /// Draws the screen.
 pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let lines: Vec<&LogLine> = scene.view.log_lines(scene.shown()).collect();
-    let height = usize::from(area.height.saturating_sub(1));
     let last = lines.len().saturating_sub(1);
     let selected = if scene.view.follow { last } else { scene.view.row.min(last) };
+    // A line that is cut off is shown whole below when it is selected.
+    let room = usize::from(area.width.saturating_sub(LABEL_WIDTH));
+    let cut = lines.get(selected).filter(|entry| entry.text.chars().count() > room);
+    let whole = cut.map_or_else(Vec::new, |entry| wrap(&entry.text, area.width.saturating_sub(1).max(1)));
+    let height = usize::from(area.height.saturating_sub(1)).saturating_sub(whole.len());
     let first = selected.saturating_sub(height.saturating_sub(1) / if scene.view.follow { 1 } else { 2 });
     let mut rows = vec![heading(scene, lines.len())];
     if lines.is_empty() {
@@ -21,6 +28,8 @@ pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffe
     }
     let shown = lines.iter().enumerate().skip(first).take(height);
     rows.extend(shown.map(|(index, entry)| log_line(scene, entry, index == selected)));
+    rows.resize(height + 1, Line::default());
+    rows.extend(whole.into_iter().map(|text| line(scene.look, Role::Focus, format!(" {text}"))));
     fill(buffer, area, rows);
 }
 

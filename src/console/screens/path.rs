@@ -73,6 +73,8 @@ pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffe
         (false, true) => Constraint::Length(12),
         (false, false) => Constraint::Length(6),
     };
+    put(buffer, area, 0, &legend(scene));
+    let area = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     let [views, table] = Layout::vertical([Constraint::Fill(1), rows]).areas(area);
     let [top, front] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).spacing(1).areas(views);
     draw_view(scene, TOP, top, buffer);
@@ -83,7 +85,8 @@ pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffe
 fn draw_view(scene: &Scene<'_>, camera: Camera, area: Rect, buffer: &mut Buffer) {
     let shown = scene.shown();
     let path = &shown.sides.get(scene.view.side).path;
-    put(buffer, area, 0, &legend(scene, camera));
+    let heading = format!(" {} arm, {}", scene.view.side, camera.name);
+    put(buffer, area, 0, &line(scene.look, Role::Title, heading));
     let plot = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     let points = everything(scene, shown, path);
     if points.is_empty() {
@@ -115,20 +118,22 @@ fn draw_view(scene: &Scene<'_>, camera: Camera, area: Rect, buffer: &mut Buffer)
     grid.draw(scene.look, plot, buffer);
 }
 
-fn legend<'a>(scene: &Scene<'a>, camera: Camera) -> Line<'a> {
+/// What the marks of both views mean, short enough for 80 columns; the density of a line tells paths apart without colour.
+fn legend<'a>(scene: &Scene<'a>) -> Line<'a> {
     let (look, glyphs) = (scene.look, scene.look.glyphs());
     let quality = scene.live.body.quality(scene.view.side, scene.live.now);
     let person = match quality {
-        PoseQuality::Seen => span(look, Role::Good, format!(" {} person seen", glyphs.good)),
-        PoseQuality::Inferred => span(look, Role::Late, format!(" {} person inferred", glyphs.late)),
-        PoseQuality::Lost => span(look, Role::Stale, format!(" {} person lost", glyphs.stale)),
+        PoseQuality::Seen => span(look, Role::Good, format!("{} person seen ", glyphs.good)),
+        PoseQuality::Inferred => span(look, Role::Late, format!("{} person inferred ", glyphs.late)),
+        PoseQuality::Lost => span(look, Role::Stale, format!("{} person lost ", glyphs.stale)),
     };
     Line::from(vec![
-        span(look, Role::Title, format!(" {} arm, {}", scene.view.side, camera.name)),
         person,
-        span(look, Role::Resistance, format!(" {} resistance", glyphs.star)),
-        span(look, Role::Focus, format!(" {} gripper", glyphs.gripper)),
-        span(look, Role::Updated, format!(" {} path now", glyphs.waypoint)),
+        span(look, Role::Planned, "- - planned "),
+        span(look, Role::Travelled, "--- travelled "),
+        span(look, Role::Updated, format!("-{}- path now ", glyphs.waypoint)),
+        span(look, Role::Resistance, format!("{} resistance ", glyphs.star)),
+        span(look, Role::Focus, format!("{} gripper", glyphs.gripper)),
     ])
 }
 
@@ -205,7 +210,7 @@ fn table_lines<'a>(scene: &Scene<'a>, area: Rect) -> Vec<Line<'a>> {
     let decimals = if area.width < 100 { 2 } else { 3 };
     let changes = &scene.shown().sides.get(scene.view.side).path.changes;
     let heading = format!(
-        "Way-points that moved, {} arm: {} (newest first; digits on ellipses: weight in tenths)",
+        "Way-points that moved, {} arm: {} (newest first; ellipses: weight in tenths)",
         scene.view.side,
         changes.len()
     );

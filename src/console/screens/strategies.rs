@@ -47,8 +47,8 @@ fn strategy_lines<'a>(scene: &Scene<'a>, strategy: &'a StrategyView, area: Rect,
     let state = if works { " at work " } else { "" };
     let origin = match (strategy.measured, energies(strategy).next().is_some()) {
         (true, _) => "measured in this trial",
-        (false, true) => "measured in an earlier trial",
-        (false, false) => "never run: only its path is judged",
+        (false, true) => "from an earlier trial",
+        (false, false) => "never run: path judged",
     };
     let mut lines = vec![
         Line::from(span(look, role, format!(" {} {}{state} ", front::letter(strategy.kind), strategy.kind))),
@@ -71,11 +71,14 @@ fn row_lines<'a>(scene: &Scene<'a>, row: &StrategyRow, width: u16, most: f64) ->
     let number = |value: Option<f64>, unit: &str| {
         value.map_or_else(|| look.glyphs().none.to_owned(), |value| format!("{value:.2}{unit}"))
     };
-    let share = row.inside.map(|share| share * 100.0);
+    let share = row.inside.map_or_else(|| look.glyphs().none.to_owned(), |share| format!("{:.0} %", share * 100.0));
+    let inside = if width < 34 { "in" } else { "inside" };
+    let reach = format!("reach {} · {share} {inside} 95 %", number(row.reachability, ""));
+    let left = |newtons: f64| format!("{newtons:.2} N left");
     let mut lines = vec![
         title(look, format!("{} arm", row.side)),
-        line(look, Role::Text, format!("reach {} · {} inside 95 %", number(row.reachability, ""), number(share, " %"))),
-        line(look, Role::Text, format!("comfort: {} left", number(row.comfort, " N"))),
+        line(look, Role::Text, reach),
+        line(look, Role::Text, format!("comfort {}", row.comfort.map_or("not measured".into(), left))),
     ];
     let room = usize::from(width).saturating_sub(14).min(20);
     for (index, energy) in row.energies.iter().enumerate() {

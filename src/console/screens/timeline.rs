@@ -16,10 +16,9 @@ const LABEL: u16 = 7;
 /// Draws the axis: heading, then one row for each side.
 pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let look = scene.look;
-    let heading = format!(
-        "Last {} (digits: steps, i: iteration, v: resistance, h: hold, c: continue, S: stop, ?: stale)",
-        seconds(SPAN)
-    );
+    let mark = look.glyphs().mark;
+    let heading =
+        format!("{}: 1-6 step, i iteration, {mark} resistance, h hold, c continue, S stop, ? stale", seconds(SPAN));
     put(buffer, area, 0, &Line::from(span(look, Role::Title, heading)));
     for (row, side) in (1..).zip(Side::BOTH) {
         put(buffer, area, row, &axis(scene, side, area.width));

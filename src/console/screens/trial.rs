@@ -173,7 +173,7 @@ fn arm_lines<'a>(scene: &Scene<'a>, side: Side, area: Rect) -> Vec<Line<'a>> {
     let room = usize::from(area.height).saturating_sub(lines.len() + 1);
     let first = view.iterations.len().saturating_sub(room);
     let most = view.iterations.iter().map(|iteration| iteration.energy).fold(0.0, f64::max);
-    let heading = format!(" n/{:<4}energy: resistance sum, ends at 0 N", view.iterations_maximum);
+    let heading = format!(" n/{:<4}energy (sum), ends at 0 N", view.iterations_maximum);
     lines.push(line(look, Role::Muted, heading));
     let rows = view.iterations.iter().skip(first);
     lines.extend(rows.map(|iteration| iteration_line(scene, iteration, view.iterations_maximum, most)));

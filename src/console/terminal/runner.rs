@@ -1,9 +1,9 @@
 //! The console's loop: takes events and snapshots in, carries reactions out, and draws when something changed.
 
 use super::Reload;
+use super::changes::{Vitals, is_news};
 use super::guard::TerminalGuard;
 use super::signals::Signals;
-use crate::body::Side;
 use crate::command::Command;
 use crate::console::app::{App, Reaction};
 use crate::console::draw::{Scene, draw};
@@ -13,7 +13,7 @@ use crate::console::theme::Look;
 use crate::console::{
     CommandSink, ConsoleError, ConsoleOptions, ExitReason, ReplayControl, SnapshotSource, StopHandle,
 };
-use crate::snapshot::{Snapshot, StopPhase, Verdict, Watermark};
+use crate::snapshot::{Snapshot, Watermark};
 use crossbeam_channel::{Receiver, RecvTimeoutError};
 use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use std::time::{Duration, Instant};
@@ -23,25 +23,6 @@ const CLOCK: Duration = Duration::from_secs(1);
 
 /// How long the core may say nothing before the screen says so: it makes a snapshot at every beat of its 100 Hz.
 const SILENCE: Duration = Duration::from_millis(500);
-
-/// What can change on the screen though no message came: things going stale, a stop that is not confirmed.
-#[derive(Debug, PartialEq)]
-struct Vitals {
-    stop: StopPhase,
-    fresh: [bool; 4],
-    topics: Vec<Verdict>,
-}
-
-impl Vitals {
-    fn of(snapshot: &Snapshot) -> Self {
-        let now = snapshot.now;
-        let force = |side| snapshot.sides.get(side).force.freshness.is_fresh(now);
-        let body = snapshot.body.freshness.is_fresh(now);
-        let fresh = [snapshot.robot.fresh(now).is_some(), force(Side::Left), force(Side::Right), body];
-        let topics = snapshot.topics.iter().map(|topic| topic.verdict(now)).collect();
-        Self { stop: snapshot.stop.phase(now), fresh, topics }
-    }
-}
 
 /// What the loop is connected to.
 pub(super) struct Wires<'a> {
@@ -145,11 +126,10 @@ impl<'a> Runner<'a> {
     }
 
     fn take_snapshot(&mut self, input: &InputThread) -> Option<ExitReason> {
-        let newer = self.wires.snapshots.newest()?;
-        let mut known = std::mem::take(&mut self.snapshot);
-        known.now = newer.now;
+        let mut newer = self.wires.snapshots.newest()?;
+        let known = std::mem::take(&mut self.snapshot);
         let vitals = Vitals::of(&newer);
-        self.dirty |= known != newer || vitals != self.vitals;
+        self.dirty |= is_news(known, &mut newer) || vitals != self.vitals;
         (self.snapshot, self.vitals, self.taken) = (newer, vitals, Instant::now());
         let reactions = self.app.on_snapshot(&self.snapshot);
         self.carry_out(reactions, input)

@@ -60,11 +60,11 @@ fn every_screen_in_ascii() {
 #[test]
 fn every_screen_in_colour_and_in_mono() {
     each(|name, snapshot, view| {
-        let colour = drawn(snapshot, view, COLOUR, (80, 24));
-        let mono = drawn(snapshot, view, MONO, (80, 24));
-        assert_eq!(text_of(&colour), text_of(&mono), "{name}: only styles may differ");
-        insta::assert_snapshot!(format!("colour_{name}"), styles(&colour));
-        insta::assert_snapshot!(format!("mono_{name}"), styles(&mono));
+        let pictures = |look| SIZES.map(|size| drawn(snapshot, view, look, size));
+        let (colour, mono) = (pictures(COLOUR), pictures(MONO));
+        assert_eq!(colour.each_ref().map(text_of), mono.each_ref().map(text_of), "{name}: only styles may differ");
+        insta::assert_snapshot!(format!("colour_{name}"), colour.each_ref().map(styles).join("\n\n"));
+        insta::assert_snapshot!(format!("mono_{name}"), mono.each_ref().map(styles).join("\n\n"));
     });
 }
 

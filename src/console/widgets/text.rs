@@ -61,8 +61,10 @@ pub(in crate::console) fn wrap(text: &str, width: u16) -> Vec<String> {
 pub(in crate::console) fn seconds(value: f64) -> String {
     if value < 0.0995 {
         format!("{:.0} ms", value * 1000.0)
-    } else if value < 99.95 {
+    } else if value < 9.95 {
         format!("{value:.1} s")
+    } else if value < 99.5 {
+        format!("{value:.0} s")
     } else if value < 5999.5 {
         format!("{:.0} min", value / 60.0)
     } else {
