@@ -242,7 +242,8 @@ impl Worker {
                 self.beat();
                 // After a long pause the missed beats are not made up for: the arms must not hurry, and no two beats come
                 // so close together that what is measured between them is mostly noise.
-                next_tick = (next_tick + TICK).max(now + TICK / 2);
+                // The beat itself may have taken long: it is over now, not when it was due.
+                next_tick = (next_tick + TICK).max(Instant::now() + TICK / 2);
             }
             if now >= next_snapshot {
                 self.supervisor.refresh_comparison();

@@ -4,6 +4,7 @@ use crate::assembly::{RobotState, SwitchRequest};
 use crate::kinematics::RobotModel;
 use crate::supervisor::Setup;
 use crossbeam_channel::unbounded;
+use std::sync::OnceLock;
 
 /// Nothing here is timed; a thread that has not answered after this has hung.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -366,4 +367,62 @@ fn a_stop_message_leaves_while_the_worker_hangs() {
     stops.recv_timeout(PATIENCE).unwrap();
     drop(release);
     drop(engine);
+}
+
+/// Takes long over two samples that it sends to itself after every other beat: the second one falls into a beat.
+struct Slow {
+    inbox: Arc<OnceLock<Inbox>>,
+    beats: Sender<Stamp>,
+    after_next: bool,
+}
+
+impl Slow {
+    fn offer(&self, side: Side) {
+        if let Some(inbox) = self.inbox.get() {
+            inbox.offer(Input::Collision { side, active: false });
+        }
+    }
+}
+
+impl Outlet for Slow {
+    fn setpoint(&mut self, _: Stamp, _: Side, _: &JointVector) -> Result<(), String> {
+        Ok(())
+    }
+    fn release(&mut self, _: Side) {}
+    fn surround(&mut self, _: Scene) {}
+    fn plan(&mut self, _: PlanOrder) {}
+    fn switch(&mut self, _: SwitchRequest) {}
+    fn show(&mut self, _: &Snapshot) {}
+    fn record(&mut self, now: Stamp, input: &Input, _: &[Effect]) {
+        match input {
+            Input::Tick => {
+                self.after_next = !self.after_next;
+                if self.after_next {
+                    self.offer(Side::Left);
+                }
+                let _ = self.beats.send(now);
+            }
+            Input::Collision { side, .. } => {
+                if *side == Side::Left {
+                    self.offer(Side::Right);
+                }
+                thread::sleep(TICK.mul_f64(1.2));
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn after_a_beat_that_took_long_the_next_one_does_not_follow_at_once() {
+    let stop = StopThread::start(|| ()).unwrap();
+    let (beats, heard) = unbounded();
+    let inbox = Arc::new(OnceLock::new());
+    let slow = Slow { inbox: Arc::clone(&inbox), beats, after_next: false };
+    let engine = Engine::start(supervisor(), Box::new(slow), stop.latch()).unwrap();
+    inbox.set(engine.inbox()).unwrap();
+    let beats: Vec<Stamp> = (0..30).map(|_| heard.recv_timeout(PATIENCE).unwrap()).collect();
+    // A least distance, whatever else the computer does.
+    let closest = beats.iter().zip(beats.iter().skip(1)).map(|(one, next)| next.since(*one)).min().unwrap();
+    assert!(closest >= TICK / 2, "{closest:?}");
 }
