@@ -6,6 +6,7 @@
 //! other tools open the file. `docs/records.md` describes the format. Writing never blocks the robot: what does not fit
 //! into the queue is counted and reported. Nothing here decides anything.
 
+mod ahead;
 mod bag;
 mod channels;
 mod chunk;

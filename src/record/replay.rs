@@ -1,5 +1,6 @@
 //! Runs a recorded trial through the same core and compares every decision with the recorded one.
 
+use super::ahead::read_ahead;
 use super::entry::{Header, Recipe, Step};
 use super::error::JournalError;
 use super::file::JournalFile;
@@ -93,7 +94,7 @@ impl Replay {
         let journal = journal.into();
         let mut replay = None;
         let mut refused = None;
-        let reading = read(&journal, |header, step| {
+        let reading = read_ahead(&journal, |header, step| {
             if replay.is_none() && refused.is_none() {
                 match Self::new(header, &change) {
                     Ok(made) => replay = Some(made),

@@ -9,6 +9,9 @@ use std::path::Path;
 /// The page's looks, on the screen and on paper.
 const STYLE: &str = include_str!("page/style.css");
 
+/// Rows of a table that is not broken between two sheets of paper: it fits on one in any case.
+const ROWS_KEPT_TOGETHER: usize = 20;
+
 /// A page in the making.
 #[derive(Clone, Debug)]
 pub struct Page {
@@ -58,7 +61,8 @@ impl Page {
 
     /// Adds a table. Cells that hold a number only are set flush right.
     pub fn table(&mut self, caption: &str, head: &[&str], rows: &[Vec<String>]) -> &mut Self {
-        let mut text = format!("<table><caption>{}</caption>\n<thead><tr>", escape(caption));
+        let class = if rows.len() <= ROWS_KEPT_TOGETHER { " class=\"whole\"" } else { "" };
+        let mut text = format!("<table{class}><caption>{}</caption>\n<thead><tr>", escape(caption));
         for cell in head {
             let _ = write!(text, "<th scope=\"col\">{}</th>", escape(cell));
         }

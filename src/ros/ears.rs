@@ -11,10 +11,14 @@ use crate::geometry::{Pose, Vector, Wrench};
 use crate::supervisor::EndpointSample;
 use crossbeam_channel::{Receiver, bounded};
 use rosrust::{Publisher, Subscriber};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// The topic of the messages that measure the way itself.
 const PING: &str = "~ping";
+
+/// How often it is looked whether somebody listens.
+const LOOK: Duration = Duration::from_millis(10);
 
 fn listen(topic: &str) -> Result<(Subscriber, Receiver<Instant>), RosError> {
     let (sender, heard) = bounded(64);
@@ -114,7 +118,14 @@ impl ForceVoice {
     pub fn start(side: Side, patience: Duration) -> Result<Self, RosError> {
         let topic = format!("/robot/limb/{side}/endpoint_state");
         let publisher = advertise(&topic, 1)?;
-        publisher.wait_for_subscribers(Some(patience)).map_err(|error| RosError::registration(&topic, error))?;
+        // Not until all are connected whom the master names: it may still name a node that was killed.
+        let began = Instant::now();
+        while publisher.subscriber_count() == 0 {
+            if began.elapsed() > patience {
+                return Err(RosError::registration(&topic, "nobody listens to it"));
+            }
+            thread::sleep(LOOK);
+        }
         Ok(Self { publisher, side })
     }
 
