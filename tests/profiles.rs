@@ -34,14 +34,14 @@ fn a_profile_with_settings_that_can_be_used_is_told_with_its_file() {
 #[test]
 fn a_setting_that_contradicts_the_ones_below_it_is_named_with_file_and_key() {
     let (good, words) = check("[settings.guard.tiers]\nadvise = 20.0\n", "");
-    assert!(!good && words.contains("person-09.toml") && words.contains("tiers"), "{words}");
+    assert!(!good && words.contains("person-09.toml") && words.contains("advise tier"), "{words}");
 }
 
 #[test]
 fn the_file_of_settings_counts_too() {
     let lines = "[settings.guard.tiers]\nadvise = 9.0\n";
     let (good, words) = check(lines, "[guard.tiers]\nslow = 8.5\n");
-    assert!(!good && words.contains("tiers"), "{words}");
+    assert!(!good && words.contains("slow tier"), "{words}");
 }
 
 #[test]

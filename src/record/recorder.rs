@@ -54,8 +54,8 @@ enum Item {
     Depth { stamp: Stamp, width: u32, height: u32, millimetres: Arc<[u16]> },
 }
 
-/// The longest time that something recorded waits in memory.
-const FLUSH_EVERY: Duration = Duration::from_secs(1);
+/// The longest time that something recorded waits in memory: with what a disk and a busy machine take, a second is not exceeded.
+const FLUSH_EVERY: Duration = Duration::from_millis(800);
 
 /// A recording that is under way. Dropping it ends the journal in order.
 #[derive(Debug)]
