@@ -65,6 +65,10 @@ struct Yielding {
 /// The engine's beat: 100 Hz.
 const BEAT: std::time::Duration = std::time::Duration::from_millis(10);
 
+/// A beat that seems later than this is a jump of the clock, or a pause after which the robot's own time-out (0.2 s) has
+/// stopped the arms.
+const LATEST: std::time::Duration = std::time::Duration::from_millis(200);
+
 /// The share of its speed at which a motion goes on under a verdict of slow.
 const SLOW_RATIO: f64 = 0.5;
 
@@ -164,9 +168,9 @@ impl Supervisor {
 
     fn tick(&mut self, now: Stamp) {
         let last = self.last_tick.replace(now).unwrap_or(now);
-        // A clock that went back says nothing about how long it was: the beat came as it always does, and an arm that moves
-        // must neither stop short for one beat nor start anew.
-        let span = now.checked_since(last).unwrap_or(BEAT);
+        // A clock that jumped, in either direction, says nothing about how long it was: the beat came as it always does, and an
+        // arm that moves must neither stop short for one beat nor hurry.
+        let span = now.checked_since(last).filter(|span| *span <= LATEST).unwrap_or(BEAT);
         let in_trial = self.mode != Mode::Idle;
         let inputs = self.protection.judge(now, in_trial);
         let force = if in_trial { self.protection.judge_force() } else { Verdict::clear() };

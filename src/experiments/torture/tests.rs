@@ -42,6 +42,20 @@ fn s_39_arms_that_were_slowed_or_fast_stand_in_time_after_a_hold() {
 }
 
 #[test]
+fn a_clock_that_jumps_ahead_does_not_hurry_an_arm() {
+    // A jump of some seconds counted as two beats: the arm went on a third faster for one of them.
+    for seed in [2_001_439, 3_000_497] {
+        assert_eq!(torture(seed).violation, None, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_force_after_the_end_of_a_trial_asks_for_no_stop() {
+    // Garbage came in 30 ms after the operator had given the trial up.
+    assert_eq!(torture(2_002_391).violation, None);
+}
+
+#[test]
 fn s_13_a_force_that_calls_for_a_stop_is_not_forgotten_for_a_mild_one_that_follows_it() {
     // In this trial both came within one beat.
     assert_eq!(torture(2_003_600).violation, None);

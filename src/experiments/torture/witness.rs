@@ -59,6 +59,10 @@ struct Arm {
     moved: Option<Stamp>,
 }
 
+/// Seconds within which a beat that came late is still made up for: until the robot's own time-out has stopped the arms, and
+/// a beat for rounding.
+const LATE: f64 = 0.21;
+
 /// The account of one trial.
 #[derive(Debug)]
 pub(super) struct Witness {
@@ -139,7 +143,9 @@ impl Witness {
                 let good = sample.wrench.force.is_finite();
                 arm.heard = Some(now);
                 arm.force = good.then_some(now);
-                let moving = arm.moved.is_some_and(|moved| lived.since(moved) <= Duration::from_millis(50));
+                // After the end of a trial nothing is commanded any more: a stop would only take the decision from the operator.
+                let moving =
+                    !self.ended && arm.moved.is_some_and(|moved| lived.since(moved) <= Duration::from_millis(50));
                 if good && moving && sample.wrench.force.norm() > UNBEARABLE_NEWTONS {
                     self.unbearable_since.get_or_insert(lived);
                 }
@@ -361,10 +367,12 @@ impl Witness {
     }
 }
 
-/// The time that a step may take: by the world, and where the clock jumped ahead, by as much of it as a late beat makes up for.
+/// The time that a step may take: by the world, and where the clock jumped a little ahead, by as much of it as a late beat makes
+/// up for. What is later than [`LATE`] is made up for by nothing.
 fn seconds_between(before: &Sent, sent: &Sent) -> f64 {
-    let by_clock = sent.clock.since(before.clock).as_secs_f64().min(0.02);
-    sent.at.since(before.at).as_secs_f64().max(by_clock).max(0.01)
+    let by_clock = sent.clock.since(before.clock).as_secs_f64();
+    let made_up_for = if by_clock <= LATE { by_clock.min(0.02) } else { 0.0 };
+    sent.at.since(before.at).as_secs_f64().max(made_up_for).max(0.01)
 }
 
 /// Whether something that arrived at a moment holds still; where the clock went back it does not.
