@@ -2,7 +2,6 @@
 //! clock has its own.
 
 use crate::snapshot::{CheckLine, Shared, Snapshot, StopPhase, TopicHealth, Verdict};
-use crate::time::Stamp;
 
 /// What can change on the screen though no message came.
 #[derive(Debug, PartialEq)]
@@ -30,12 +29,11 @@ impl Vitals {
 
 /// True where a snapshot says more than that time has passed since the one before.
 pub(super) fn is_news(mut known: Snapshot, newer: &mut Snapshot) -> bool {
-    let now = newer.now;
-    known.now = now;
+    known.now = newer.now;
     // What grows with time alone is compared apart, and is put back.
     let checks = (std::mem::take(&mut known.checks), std::mem::take(&mut newer.checks));
     let topics = (std::mem::take(&mut known.topics), std::mem::take(&mut newer.topics));
-    let news = known != *newer || !are_the_same_checks(&checks) || !are_the_same_topics(&topics, now);
+    let news = known != *newer || !are_the_same_checks(&checks) || !are_the_same_topics(&topics);
     (newer.checks, newer.topics) = (checks.1, topics.1);
     news
 }
@@ -45,12 +43,10 @@ fn are_the_same_checks((known, newer): &(Shared<Vec<CheckLine>>, Shared<Vec<Chec
     known.len() == newer.len() && known.iter().zip(newer.iter()).all(|(known, newer)| said(known) == said(newer))
 }
 
-/// The rates of a topic that has fallen silent sink from beat to beat, and are not shown any more.
-fn are_the_same_topics((known, newer): &(Shared<Vec<TopicHealth>>, Shared<Vec<TopicHealth>>), now: Stamp) -> bool {
+/// Rate, gap and jitter change with every beat; without a message they say only that time has passed, and a verdict that
+/// changes with them is among the vitals.
+fn are_the_same_topics((known, newer): &(Shared<Vec<TopicHealth>>, Shared<Vec<TopicHealth>>)) -> bool {
     let same = |known: &TopicHealth, newer: &TopicHealth| {
-        if newer.verdict(now) < Verdict::Stale {
-            return known == newer;
-        }
         let (rate, gap, jitter) = (newer.rate, newer.gap, newer.jitter);
         *newer == TopicHealth { rate, gap, jitter, ..known.clone() }
     };
@@ -85,9 +81,12 @@ mod tests {
     }
 
     #[test]
-    fn a_message_a_rate_a_check_and_a_line_of_the_log_are_news() {
+    fn a_message_a_check_and_a_line_of_the_log_are_news() {
         let live = fixture(Situation::Live);
-        assert!(is_news(live.clone(), &mut later(&live)), "the rate of a live topic");
+        assert!(!is_news(live.clone(), &mut later(&live)), "rates without a message");
+        let mut heard = later(&live);
+        heard.topics.make_mut()[0].freshness.last = Some(heard.now);
+        assert!(is_news(live, &mut heard));
         let stale = fixture(Situation::Stale);
         let changes: [fn(&mut Snapshot); 4] = [
             |snapshot| snapshot.topics.make_mut()[0].freshness.last = Some(snapshot.now),

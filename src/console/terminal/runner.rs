@@ -21,6 +21,9 @@ use std::time::{Duration, Instant};
 /// How often an unchanged screen is drawn anew, so that ages and the clock go on.
 const CLOCK: Duration = Duration::from_secs(1);
 
+/// How often it is looked for news where there were none for as long as [`CLOCK`]; a key and a new size need no look.
+const IDLE_LOOK: Duration = Duration::from_millis(100);
+
 /// How long the core may say nothing before the screen says so: it makes a snapshot at every beat of its 100 Hz.
 const SILENCE: Duration = Duration::from_millis(500);
 
@@ -46,6 +49,8 @@ pub(super) struct Runner<'a> {
     taken: Instant,
     vitals: Vitals,
     dirty: bool,
+    /// When there was news last.
+    changed: Instant,
     drawn: Option<Instant>,
 }
 
@@ -62,7 +67,21 @@ impl<'a> Runner<'a> {
         let snapshot = Snapshot::default();
         let (vitals, taken) = (Vitals::of(&snapshot), Instant::now());
         let bell = options.bell;
-        Self { app, look, bell, frame, wires, guard, signals, snapshot, taken, vitals, dirty: true, drawn: None }
+        Self {
+            app,
+            look,
+            bell,
+            frame,
+            wires,
+            guard,
+            signals,
+            snapshot,
+            taken,
+            vitals,
+            dirty: true,
+            changed: taken,
+            drawn: None,
+        }
     }
 
     /// Runs until there is a reason to leave. The arms are asked to hold where nobody watches them any more.
@@ -104,6 +123,7 @@ impl<'a> Runner<'a> {
     fn patience(&self) -> Duration {
         match self.drawn {
             Some(drawn) if self.dirty => self.frame.saturating_sub(drawn.elapsed()),
+            Some(_) if self.changed.elapsed() > CLOCK => self.frame.max(IDLE_LOOK),
             Some(_) => self.frame,
             None => Duration::ZERO,
         }
@@ -129,7 +149,9 @@ impl<'a> Runner<'a> {
         let mut newer = self.wires.snapshots.newest()?;
         let known = std::mem::take(&mut self.snapshot);
         let vitals = Vitals::of(&newer);
-        self.dirty |= is_news(known, &mut newer) || vitals != self.vitals;
+        if is_news(known, &mut newer) || vitals != self.vitals {
+            (self.dirty, self.changed) = (true, Instant::now());
+        }
         (self.snapshot, self.vitals, self.taken) = (newer, vitals, Instant::now());
         let reactions = self.app.on_snapshot(&self.snapshot);
         self.carry_out(reactions, input)
