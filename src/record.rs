@@ -14,6 +14,7 @@ mod entry;
 mod error;
 mod export;
 mod file;
+mod foreign_bag;
 mod player;
 mod reader;
 mod recorder;

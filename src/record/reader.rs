@@ -5,6 +5,7 @@ use super::chunk;
 use super::entry::{Header, OwnedEffectEntry, OwnedInputEntry, Step};
 use super::error::{JournalError, Problem};
 use super::file::{Contents, JournalFile};
+use super::foreign_bag;
 use super::writer::{FORMAT, METADATA};
 use mcap::records::{Metadata, Record};
 use std::collections::HashMap;
@@ -170,13 +171,13 @@ fn is_chunk(body: &[u8]) -> bool {
 }
 
 /// What a file is that is no MCAP file, in words.
-fn kind_of(bytes: &[u8]) -> &'static str {
+fn kind_of(bytes: &[u8]) -> String {
     if bytes.starts_with(b"#ROSBAG V") {
-        "it is a rosbag; play it with `rosbag play` into `valet console --dry-run`"
+        foreign_bag::describe(bytes)
     } else if bytes.is_empty() {
-        "it is empty"
+        "it is empty".into()
     } else {
-        "it is no MCAP file"
+        "it is no MCAP file".into()
     }
 }
 
