@@ -309,17 +309,14 @@ impl Supervisor {
     }
 
     fn see_collision(&mut self, now: Stamp, side: Side, active: bool) {
-        if self.protection.watchdogs_mut().collision(side, active) {
-            self.hold(
-                now,
-                &format!("the robot felt a contact on its {side} arm; by itself it would go on after two seconds"),
-            );
+        if let Some(cause) = self.protection.watchdogs_mut().collision(side, active) {
+            self.hold(now, &cause);
         }
     }
 
     fn see_cuff(&mut self, now: Stamp, side: Side, squeezed: bool) {
-        if self.protection.watchdogs_mut().cuff(side, squeezed) {
-            self.hold(now, &format!("the {side} arm's cuff is squeezed: a hand moves the arm; let go, then continue"));
+        if let Some(cause) = self.protection.watchdogs_mut().cuff(side, squeezed) {
+            self.hold(now, &cause);
             // Where the hand leaves the arm is not where the motion was: it must not be taken up there.
             self.drive.drop_motion();
         }

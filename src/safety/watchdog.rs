@@ -177,25 +177,19 @@ impl Watchdogs {
         self.console.observe(now, None);
     }
 
-    /// The robot's own contact detection. True at its rising edge: the robot would go on by itself after two seconds, so
-    /// the edge is latched.
-    pub fn collision(&mut self, side: Side, active: bool) -> bool {
+    /// The robot's own contact detection. What to hold with at its rising edge: the robot would go on by itself after two
+    /// seconds, so the edge is latched.
+    #[must_use]
+    pub fn collision(&mut self, side: Side, active: bool) -> Option<String> {
         let before = std::mem::replace(self.collision.get_mut(side), active);
-        let rises = active && !before;
-        if rises {
-            self.latch(Watch::Collision(side), collision_words(side));
-        }
-        rises
+        (active && !before).then(|| self.latched_now(Watch::Collision(side), collision_words(side)))
     }
 
-    /// The cuff at a wrist. True where it was squeezed just now: from then on the arm follows a hand and no command.
-    pub fn cuff(&mut self, side: Side, squeezed: bool) -> bool {
+    /// The cuff at a wrist. What to hold with where it was squeezed just now: from then on the arm follows a hand and no command.
+    #[must_use]
+    pub fn cuff(&mut self, side: Side, squeezed: bool) -> Option<String> {
         let before = std::mem::replace(self.cuff.get_mut(side), squeezed);
-        let rises = squeezed && !before;
-        if rises {
-            self.latch(Watch::Cuff(side), cuff_words(side));
-        }
-        rises
+        (squeezed && !before).then(|| self.latched_now(Watch::Cuff(side), cuff_words(side)))
     }
 
     /// Another node publishes where only valet may.
@@ -242,6 +236,12 @@ impl Watchdogs {
 
     fn latch(&mut self, watch: Watch, cause: String) {
         self.latched.entry(watch).or_insert(cause);
+    }
+
+    /// Latches a cause and hands it back.
+    fn latched_now(&mut self, watch: Watch, cause: String) -> String {
+        self.latch(watch, cause.clone());
+        cause
     }
 
     /// Judges all inputs now. What asks for a hold is latched.

@@ -179,12 +179,13 @@ fn messages_that_carry_only_the_fingers_are_not_joints_of_the_arm() {
 fn s_42_a_squeezed_cuff_holds_until_it_is_let_go_and_the_operator_acts() {
     let mut watchdogs = Watchdogs::new(WatchSettings::default());
     watchdogs.require_only(&[]);
-    assert!(!watchdogs.cuff(Side::Left, false));
-    assert!(watchdogs.cuff(Side::Left, true));
-    assert!(!watchdogs.cuff(Side::Left, true), "a squeeze is told once");
+    assert_eq!(watchdogs.cuff(Side::Left, false), None);
+    let told = watchdogs.cuff(Side::Left, true);
+    assert!(told.is_some_and(|cause| cause.contains("left arm's cuff")));
+    assert_eq!(watchdogs.cuff(Side::Left, true), None, "a squeeze is told once");
     watchdogs.acknowledge();
     assert_eq!(watchdogs.judge(at(10)).reaction, Hold, "whoever continues before the hand has gone holds again");
-    watchdogs.cuff(Side::Left, false);
+    assert_eq!(watchdogs.cuff(Side::Left, false), None);
     let verdict = watchdogs.judge(at(20));
     assert!(verdict.reaction == Hold && verdict.cause.contains("left arm's cuff"), "{verdict:?}");
     watchdogs.acknowledge();
@@ -194,9 +195,10 @@ fn s_42_a_squeezed_cuff_holds_until_it_is_let_go_and_the_operator_acts() {
 #[test]
 fn s_29_the_rising_edge_of_the_robots_own_contact_is_latched_beyond_its_two_seconds() {
     let mut watchdogs = Watchdogs::new(WatchSettings::default());
-    assert!(watchdogs.collision(Side::Right, true));
-    assert!(!watchdogs.collision(Side::Right, true), "an edge is told once");
-    watchdogs.collision(Side::Right, false);
+    let told = watchdogs.collision(Side::Right, true);
+    assert!(told.is_some_and(|cause| cause.contains("right arm")));
+    assert_eq!(watchdogs.collision(Side::Right, true), None, "an edge is told once");
+    assert_eq!(watchdogs.collision(Side::Right, false), None);
     watchdogs.require_only(&[]);
     let verdict = watchdogs.judge(at(5000));
     assert_eq!(verdict.reaction, Hold);
