@@ -173,13 +173,17 @@ pub(super) fn choose_strategy(setup: &mut Setup, name: Option<&str>) -> Result<(
     Ok(())
 }
 
-/// Puts the garment that was asked for into a setup.
+/// Puts the garment that was asked for, or else the profile's first, into a setup: the grippers go no further apart than it is slack.
 pub(super) fn choose_garment(setup: &mut Setup, person: &LoadedProfile, name: Option<&str>) -> Result<(), Failure> {
-    let Some(name) = name else { return Ok(()) };
-    let found = person.profile.garment(Some(name)).map(|garment| garment.name.clone());
-    let known = || person.profile.garments.iter().map(|garment| garment.name.as_str()).collect::<Vec<_>>().join(", ");
-    let unknown = || Failure::Configuration(format!("--garment {name} is none of this profile's: {}", known()));
-    setup.garment = found.ok_or_else(unknown)?;
+    let Some(garment) = person.profile.garment(name) else {
+        let Some(name) = name else { return Ok(()) };
+        let known: Vec<_> = person.profile.garments.iter().map(|garment| garment.name.as_str()).collect();
+        let unknown = format!("--garment {name} is none of this profile's: {}", known.join(", "));
+        return Err(Failure::Configuration(unknown));
+    };
+    setup.garment.clone_from(&garment.name);
+    let motion = &mut setup.settings.motion;
+    motion.maximum_gripper_distance = motion.maximum_gripper_distance.min(garment.slack_metres());
     Ok(())
 }
 
@@ -207,5 +211,34 @@ pub(super) fn conclude(reason: Result<ExitReason, Failure>, recorded: Option<&Pa
     match reason? {
         ExitReason::QuitAfterStop => Err(Failure::OperatorStop("the emergency stop was used".into())),
         ExitReason::Quit | ExitReason::BeginAnew | ExitReason::Terminated | ExitReason::TerminalLost => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PERSON: &str = "version = 1\npseudonym = \"p-01\"\n[[garments]]\nname = \"wide\"\nback_reach_metres = 1.2\n\
+                          [[garments]]\nname = \"narrow\"\nback_reach_metres = 0.6\n";
+
+    fn chosen(name: Option<&str>) -> Result<Setup, Failure> {
+        let person = LoadedProfile::parse(Path::new("p-01.toml"), PERSON).unwrap();
+        let mut setup = Setup::default();
+        choose_garment(&mut setup, &person, name).map(|()| setup)
+    }
+
+    #[test]
+    fn a_narrow_garment_brings_the_grippers_closer_and_a_wide_one_lets_them_no_further_apart() {
+        for (name, garment, metres) in [(None, "wide", 0.90), (Some("narrow"), "narrow", 0.59)] {
+            let setup = chosen(name).unwrap();
+            assert_eq!(setup.garment, garment);
+            assert!((setup.settings.motion.maximum_gripper_distance - metres).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_unknown_garment_is_refused_with_those_that_are_known() {
+        let words = chosen(Some("cape")).unwrap_err().to_string();
+        assert!(words.contains("cape") && words.contains("wide, narrow"), "{words}");
     }
 }

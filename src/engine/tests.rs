@@ -1,3 +1,5 @@
+mod guards;
+
 use super::stop::StopThread;
 use super::*;
 use crate::assembly::{RobotState, SwitchRequest};

@@ -105,7 +105,7 @@ impl ArmModel {
                 [only] => self.onward(only, only, centring),
                 [.., before, last] => self.onward(before, last, centring),
             };
-            let refused = || self.not_tracked(line, share, start);
+            let refused = || self.not_tracked(line, share, 1.0 / spans, start);
             let next = self.follow(&line.at(share), &guess).ok_or_else(refused)?;
             if knots.last().is_some_and(|last| (next - last).amax() > JUMP) {
                 return Err(refused());
@@ -136,12 +136,13 @@ impl ArmModel {
     }
 
     /// Says whether the pose is out of reach at all, or only from this posture.
-    fn not_tracked(&self, line: &Line, share: f64, start: &JointVector) -> MotionRefusal {
+    fn not_tracked(&self, line: &Line, share: f64, step: f64, start: &JointVector) -> MotionRefusal {
         let pose = line.at(share);
         if let Err(error) = self.inverse(&pose, start) {
             return MotionRefusal::unreachable(self, &pose, &error);
         }
-        let place = Point::from(pose.translation.vector);
+        let share = (share - step).max(0.0);
+        let place = Point::from(line.at(share).translation.vector);
         MotionRefusal::NotTracked { side: self.side(), place, share }
     }
 }

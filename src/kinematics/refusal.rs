@@ -22,7 +22,7 @@ pub enum MotionRefusal {
         side: Side,
     },
     /// A joint is outside its range or not a number.
-    #[error("{joint} is at {value:.4} rad, outside its range {:.4} to {:.4} rad; move the arm back by hand first", range.0, range.1)]
+    #[error("{joint} is at {value:.4} rad, outside its range {:.4} to {:.4} rad; {}", range.0, range.1, back_inside(*value, *range))]
     Joint {
         /// The joint's name on the wire.
         joint: String,
@@ -32,7 +32,7 @@ pub enum MotionRefusal {
         range: (f64, f64),
     },
     /// A gripper would leave the workspace.
-    #[error("the {side} gripper would be at {axis} = {value:.3} m, outside its workspace {:.3} to {:.3} m", range.0, range.1)]
+    #[error("the {side} gripper would be at {axis} = {value:.3} m, outside its workspace {:.3} to {:.3} m; {:.3} m would do", range.0, range.1, nearest(*value, *range))]
     Workspace {
         /// Which gripper.
         side: Side,
@@ -60,20 +60,23 @@ pub enum MotionRefusal {
     },
     /// The place can be reached, but not in a straight line from this posture.
     #[error(
-        "the {side} arm cannot follow the line to {place:.3} from its present posture ({:.0} % of the way is clear); \
-         start from another posture",
+        "the {side} arm cannot follow the line beyond {place:.3} from its present posture; the first {:.0} % of the way would do, \
+         or another posture to start from",
         share * 100.0
     )]
     NotTracked {
         /// Which arm.
         side: Side,
-        /// Where the way ends.
+        /// Where the clear part of the way ends.
         place: Point,
         /// How far the way is clear, 0 to 1.
         share: f64,
     },
     /// The grippers would come too close to each other or too far apart.
-    #[error("the grippers would be {distance:.3} m apart; allowed are {:.3} to {:.3} m", range.0, range.1)]
+    #[error(
+        "the grippers would be {distance:.3} m apart; allowed are {:.3} to {:.3} m: {:.3} m would do",
+        range.0, range.1, nearest(*distance, *range)
+    )]
     GripperDistance {
         /// Their distance in metres.
         distance: f64,
@@ -106,6 +109,19 @@ fn least_tilt(arm: &ArmModel, target: &Pose, seed: &JointVector) -> Option<f64> 
         |tilt: &f64| arm.inverse_within(target, &OrientationTolerance { cone: *tilt, turn: *tilt }, seed).is_ok();
     // Where not even the widest cone helps, the narrower ones need not be asked: a refusal must not take long.
     TILTS.last().filter(|widest| reaches(widest)).and_then(|_| TILTS.into_iter().find(reaches))
+}
+
+/// The end of a range that is nearer to a value outside it.
+fn nearest(value: f64, (lower, upper): (f64, f64)) -> f64 {
+    value.max(lower).min(upper)
+}
+
+/// What to do about a joint outside its range.
+fn back_inside(value: f64, range: (f64, f64)) -> String {
+    if value.is_nan() {
+        return "it is not a number: check /robot/joint_states".into();
+    }
+    format!("{:.4} rad would do: where the arm stands there, move it back by hand first", nearest(value, range))
 }
 
 /// The nearest thing that would do instead.

@@ -146,7 +146,16 @@ impl GarmentSizes {
     }
 }
 
+/// Metres before the back is taut at which the grippers stop going apart: twenty times what a guard lets pass.
+const BEFORE_TAUT: f64 = 0.01;
+
 impl GarmentSizes {
+    /// The furthest in metres that the grippers may be apart with this garment between them.
+    #[must_use]
+    pub const fn slack_metres(&self) -> f64 {
+        self.back_reach_metres - BEFORE_TAUT
+    }
+
     /// The force of the back on each gripper in newtons: none before it is taut or once a side has slipped.
     fn back_forces(&self, holders: &PerSide<Holder>, wearing: &PerSide<Wearing>) -> PerSide<Vector> {
         let across = holders.right.tip - holders.left.tip;
@@ -211,3 +220,6 @@ pub(super) trait Garment: std::fmt::Debug + Send {
     /// Makes the garment slip out of a gripper.
     fn slip(&mut self, side: crate::body::Side);
 }
+
+#[cfg(test)]
+mod tests;

@@ -44,7 +44,9 @@ fn a_start_that_is_no_number_or_outside_the_limits_is_refused_by_name() {
         let refusal =
             plan_pair(&MODEL, &Scene::default(), &start, &PerSide::default(), &MotionLimits::default()).unwrap_err();
         assert!(matches!(&refusal, MotionRefusal::Joint { joint, .. } if joint == "left_e0"), "{refusal}");
-        assert!(refusal.to_string().contains("-3.0542 to 3.0542"), "{refusal}");
+        let words = refusal.to_string();
+        let what_would_do = if value.is_nan() { "check /robot/joint_states" } else { "3.0542 rad would do" };
+        assert!(words.contains("-3.0542 to 3.0542") && words.contains(what_would_do), "{words}");
     }
 }
 
@@ -59,7 +61,8 @@ fn a_measured_start_a_little_outside_its_range_is_brought_inside() {
 #[test]
 fn a_target_outside_the_workspace_is_refused_with_axis_value_and_range() {
     match plan_right_to(Point::new(0.6, -0.3, 0.9), &Scene::default(), &MotionLimits::default()) {
-        Err(MotionRefusal::Workspace { side: Side::Right, axis: 'z', value, range }) => {
+        Err(refusal @ MotionRefusal::Workspace { side: Side::Right, axis: 'z', value, range }) => {
+            assert!(refusal.to_string().ends_with("0.750 m would do"), "{refusal}");
             assert!((value - 0.9).abs() < 1e-12 && (range.1 - 0.75).abs() < 1e-12);
         }
         other => panic!("{other:?}"),
@@ -80,14 +83,17 @@ fn a_target_out_of_reach_is_refused_with_the_nearest_place() {
 fn grippers_that_would_come_too_close_or_too_far_apart_are_refused() {
     let limits = MotionLimits { minimum_gripper_distance: 0.37, ..MotionLimits::default() };
     match step_right(Vector::y() * 0.05, &limits) {
-        Err(MotionRefusal::GripperDistance { distance, range }) => {
+        Err(refusal @ MotionRefusal::GripperDistance { distance, range }) => {
+            assert!(refusal.to_string().ends_with("0.370 m would do"), "{refusal}");
             assert!(distance < range.0 && (range.0 - 0.37).abs() < 1e-12);
         }
         other => panic!("{other:?}"),
     }
     let limits = MotionLimits { maximum_gripper_distance: 0.5, ..MotionLimits::default() };
     match step_right(Vector::new(0.1, -0.35, 0.0), &limits) {
-        Err(MotionRefusal::GripperDistance { distance, .. }) => assert!(distance > 0.5),
+        Err(refusal @ MotionRefusal::GripperDistance { distance, .. }) => {
+            assert!(distance > 0.5 && refusal.to_string().ends_with("0.500 m would do"), "{refusal}");
+        }
         other => panic!("{other:?}"),
     }
 }
