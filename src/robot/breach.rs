@@ -130,7 +130,7 @@ mod tests {
             assert_eq!(breach.nearest(), Some(nearest));
             assert!(breach.to_string().ends_with(&format!("; {nearest:.4} would do")), "{breach}");
         }
-        let workspace = LimitBreach { what: Limit::Workspace { side: Side::Left, axis: 'z' }, value: 0.8, range };
+        let workspace = LimitBreach { what: Limit::Workspace { side: Side::Left, axis: 'z' }, value: 1.8, range };
         assert!(workspace.to_string().ends_with("; 0.9000 would do"), "{workspace}");
         let what = Limit::Clearance { first: "the left hand".into(), second: "the person's head".into() };
         let close = LimitBreach { what, value: 0.004, range: (0.01, f64::INFINITY) };
