@@ -23,11 +23,12 @@ pub use trial::{
 };
 
 use crate::assembly::RobotState;
-use crate::body::PerSide;
+use crate::body::{PerSide, Side};
 use crate::command::CommandReceipt;
 use crate::time::Stamp;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::time::Duration;
 
 /// How grave a line of the log is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -133,7 +134,7 @@ pub enum StopPhase {
 impl StopView {
     /// Nanoseconds within which the robot should confirm: `/robot/state` comes at 100 Hz on a healthy robot, and a
     /// quarter of a second is the time in which an operator decides for the red button.
-    const CONFIRMATION_NANOSECONDS: u64 = 250_000_000;
+    const CONFIRMATION: Duration = Duration::from_millis(250);
 
     /// How far the stop has come at the moment `now`.
     #[must_use]
@@ -147,8 +148,9 @@ impl StopView {
         if self.confirmed_at.is_some() {
             return StopPhase::Confirmed;
         }
-        let waited = self.requested_at.map_or(0, |requested| now.nanoseconds().saturating_sub(requested.nanoseconds()));
-        if waited <= Self::CONFIRMATION_NANOSECONDS { StopPhase::Requested } else { StopPhase::NotConfirmed }
+        // Where the clock went back, nobody knows how long it was: that is no reason to wait longer.
+        let waited = self.requested_at.map_or(Duration::ZERO, |requested| now.distance(requested));
+        if waited <= Self::CONFIRMATION { StopPhase::Requested } else { StopPhase::NotConfirmed }
     }
 
     /// Seconds from the request to the robot's confirmation.
@@ -252,6 +254,17 @@ impl Snapshot {
     #[must_use]
     pub fn newest_receipt(&self) -> Option<&CommandReceipt> {
         self.receipts.last().map(|line| &line.receipt)
+    }
+
+    /// The clock went back: what came in after the present moment is stale, also when the clock comes to those moments again.
+    pub fn forget_what_lies_ahead(&mut self, now: Stamp) {
+        let passed = |last: &Stamp| *last <= now;
+        for side in Side::BOTH {
+            let freshness = &mut self.sides.get_mut(side).force.freshness;
+            freshness.last = freshness.last.filter(passed);
+        }
+        self.body.freshness.last = self.body.freshness.last.filter(passed);
+        self.robot.state = self.robot.state.filter(|state| passed(&state.stamp));
     }
 }
 

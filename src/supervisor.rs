@@ -168,6 +168,9 @@ impl Supervisor {
 
     fn tick(&mut self, now: Stamp) {
         let last = self.last_tick.replace(now).unwrap_or(now);
+        if last > now {
+            self.view.forget_what_lies_ahead(now);
+        }
         // A clock that jumped, in either direction, says nothing about how long it was: the beat came as it always does, and an
         // arm that moves must neither stop short for one beat nor hurry.
         let span = now.checked_since(last).filter(|span| *span <= LATEST).unwrap_or(BEAT);

@@ -93,7 +93,12 @@ pub fn start_postures_for(
     orientations: &PerSide<UnitQuaternion<f64>>,
     limits: &MotionLimits,
 ) -> Result<PerSide<JointVector>, MotionRefusal> {
-    roomiest_start(model, legs, orientations, limits).map(|start| start.joints)
+    found(roomiest_start(model, legs, orientations, limits, f64::NEG_INFINITY))
+}
+
+/// The joints of a start; a search that had nothing to beat and found nothing had no places to go to.
+fn found(start: Result<Option<Start>, MotionRefusal>) -> Result<PerSide<JointVector>, MotionRefusal> {
+    start?.map(|start| start.joints).ok_or(MotionRefusal::NotFinite { side: Side::Left })
 }
 
 /// [`start_postures_for`] with the grippers in the orientation for dressing, turned inwards as far as leaves the most room.
@@ -105,33 +110,38 @@ pub fn dressing_postures(
     legs: &[Leg],
     limits: &MotionLimits,
 ) -> Result<PerSide<JointVector>, MotionRefusal> {
-    let start = |degrees: f64| roomiest_start(model, legs, &turned_inwards(degrees.to_radians()), limits);
-    let better = |best: Result<Start, _>, next: Result<Start, _>| match (best, next) {
-        (Ok(best), Ok(next)) if next.room > best.room => Ok(next),
-        (Err(_), Ok(next)) => Ok(next),
-        (best, _) => best,
-    };
-    INWARD_TURNS.into_iter().map(start).fold(start(0.0), better).map(|start| start.joints)
+    let start =
+        |degrees: f64, to_beat| roomiest_start(model, legs, &turned_inwards(degrees.to_radians()), limits, to_beat);
+    let straight = start(0.0, f64::NEG_INFINITY);
+    let mut best = straight.as_ref().ok().copied().flatten();
+    for degrees in INWARD_TURNS {
+        let to_beat = best.map_or(f64::NEG_INFINITY, |best| best.room);
+        best = start(degrees, to_beat).ok().flatten().or(best);
+    }
+    found(if best.is_some() { Ok(best) } else { straight })
 }
 
 /// Start postures of both arms and the room that they leave.
+#[derive(Clone, Copy)]
 struct Start {
     joints: PerSide<JointVector>,
     /// The least along the way of the room in the joints and of the room between the arms and what surrounds them.
     room: f64,
 }
 
+/// The roomiest start of all that leave more room than `to_beat`; `None` where they leave less.
 fn roomiest_start(
     model: &RobotModel,
     legs: &[Leg],
     orientations: &PerSide<UnitQuaternion<f64>>,
     limits: &MotionLimits,
-) -> Result<Start, MotionRefusal> {
+    to_beat: f64,
+) -> Result<Option<Start>, MotionRefusal> {
     let stages: Vec<_> = legs.iter().flat_map(|leg| leg.stages.iter().copied()).collect();
     let ways = PerSide::from_fn(|side| way(&stages, side, orientations.get(side)));
     let spans: Vec<f64> =
         ways.left.lines().zip(ways.right.lines()).map(|(left, right)| left.spans().max(right.spans())).collect();
-    let ranked = |side: Side| ranked_candidates(model.arm(side), ways.get(side), &spans, limits);
+    let ranked = |side: Side| ranked_candidates(model.arm(side), ways.get(side), &spans, limits, to_beat);
     let candidates = PerSide { left: ranked(Side::Left)?, right: ranked(Side::Right)? };
     let mut pairs: Vec<_> = candidates
         .left
@@ -139,20 +149,21 @@ fn roomiest_start(
         .flat_map(|left| candidates.right.iter().map(move |right| PerSide { left, right }))
         .collect();
     pairs.sort_by(|one, other| room_of(other).total_cmp(&room_of(one)));
-    clearest_pair(model, &scenes_of_knots(legs, &spans), &pairs, limits)
+    clearest_pair(model, &scenes_of_knots(legs, &spans), &pairs, limits, to_beat)
 }
 
-/// Of pairs with falling room in their joints, the one with the most room of either kind.
+/// Of pairs with falling room in their joints, the one with the most room of either kind that leaves more than `to_beat`.
 fn clearest_pair(
     model: &RobotModel,
     scenes: &[&Scene],
     pairs: &[Pair],
     limits: &MotionLimits,
-) -> Result<Start, MotionRefusal> {
+    to_beat: f64,
+) -> Result<Option<Start>, MotionRefusal> {
     let mut best: Option<Start> = None;
     let (mut clear, mut refusal) = (0, None);
     for pair in pairs {
-        let to_beat = best.as_ref().map_or(f64::NEG_INFINITY, |best| best.room);
+        let to_beat = best.map_or(to_beat, |best| best.room);
         // No later pair can be better than this.
         if clear >= PAIRS || room_of(pair) < to_beat {
             break;
@@ -167,7 +178,10 @@ fn clearest_pair(
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
     }
-    best.ok_or(refusal.unwrap_or(MotionRefusal::NotFinite { side: Side::Left }))
+    match (best, refusal) {
+        (None, Some(reason)) => Err(reason),
+        (best, _) => Ok(best),
+    }
 }
 
 /// The scene of every knot of the way: a line belongs to the leg that it leads into.
@@ -234,25 +248,27 @@ fn ranked_candidates(
     way: &Way,
     spans: &[f64],
     limits: &MotionLimits,
+    to_beat: f64,
 ) -> Result<Vec<Candidate>, MotionRefusal> {
     let first = way.0.first().filter(|_| way.0.iter().all(Finite::is_finite));
     let first = first.ok_or(MotionRefusal::NotFinite { side: arm.side() })?;
     let starts = arm.solutions(first, CANDIDATES).map_err(|error| MotionRefusal::unreachable(arm, first, &error))?;
-    let (mut stuck, mut candidates) = (None, Vec::new());
+    let (mut stuck, mut candidates, mut narrow) = (None, Vec::new(), 0);
     let mut follow = |starts: Vec<JointVector>| {
         for start in starts {
-            match follow_way(arm, way, spans, &start, limits) {
-                Ok(candidate) => candidates.push(candidate),
+            match follow_way(arm, way, spans, &start, limits, to_beat) {
+                Ok(Some(candidate)) => candidates.push(candidate),
+                Ok(None) => narrow += 1,
                 Err(next) => stuck = furthest(stuck.take(), next),
             }
         }
-        candidates.len()
+        candidates.len() + narrow
     };
     if follow(starts) < FEW {
         follow(postures_from_further_on(arm, way, spans));
     }
     match stuck {
-        Some(Stuck { reason, .. }) if candidates.is_empty() => Err(reason),
+        Some(Stuck { reason, .. }) if candidates.is_empty() && narrow == 0 => Err(reason),
         _ => Ok(candidates),
     }
 }
@@ -290,16 +306,21 @@ fn furthest(before: Option<Stuck>, next: Stuck) -> Option<Stuck> {
     before.filter(|before| rank(before) >= rank(&next)).or(Some(next))
 }
 
+/// The way from a start; `None` as soon as it leaves no more room than `to_beat`.
 fn follow_way(
     arm: &ArmModel,
     way: &Way,
     spans: &[f64],
     start: &JointVector,
     limits: &MotionLimits,
-) -> Result<Candidate, Stuck> {
+    to_beat: f64,
+) -> Result<Option<Candidate>, Stuck> {
     let mut knots = vec![*start];
     let mut room = arm.limits().margin(start);
     for (line, spans) in way.lines().zip(spans) {
+        if room <= to_beat {
+            return Ok(None);
+        }
         let here = knots.last().copied().unwrap_or(*start);
         if line.is_still() {
             knots.extend(std::iter::repeat_n(here, shares(*spans).count() - 1));
@@ -313,7 +334,7 @@ fn follow_way(
         }
         knots.extend(next.into_iter().skip(1));
     }
-    Ok(Candidate { start: *start, knots, room })
+    Ok((room > to_beat).then_some(Candidate { start: *start, knots, room }))
 }
 
 #[cfg(test)]

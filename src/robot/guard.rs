@@ -118,6 +118,14 @@ impl<L: Limb> GuardedLimb<L> {
         &self.inner
     }
 
+    /// The clock went back before what was sent or measured: when it comes to those moments again, that is long past.
+    pub(super) fn forget_what_lies_ahead(&mut self, now: Stamp) {
+        self.sent = self.sent.filter(|sent| sent.stamp <= now);
+        for slot in &mut self.measured {
+            *slot = slot.filter(|(stamp, _)| *stamp <= now || now.distance(*stamp) <= self.settings.freshness);
+        }
+    }
+
     fn measured_joints(&self) -> Option<JointVector> {
         let mut joints = JointVector::zeros();
         for (slot, measured) in joints.iter_mut().zip(&self.measured) {
@@ -241,6 +249,7 @@ impl<L: Limb> GuardedLimb<L> {
 
 impl<L: Limb> Limb for GuardedLimb<L> {
     fn command(&mut self, now: Stamp, joints: &JointVector) -> Result<(), CommandError> {
+        self.forget_what_lies_ahead(now);
         self.judge(now, joints)?;
         self.inner.command(now, joints)?;
         let (speed, step) = self.previous(now).map_or((JointVector::zeros(), USUAL_STEP), |previous| {

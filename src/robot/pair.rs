@@ -51,6 +51,7 @@ impl<L: Limb> GuardedPair<L> {
     /// # Errors
     /// A [`CommandError`]; then nothing was sent.
     pub fn command(&mut self, now: Stamp, side: Side, joints: &JointVector) -> Result<(), CommandError> {
+        self.forget_what_lies_ahead(now);
         self.limbs.get(side).judge(now, joints)?;
         if let Some(here) = self.joints() {
             let mut next = here;
@@ -65,6 +66,7 @@ impl<L: Limb> GuardedPair<L> {
     /// # Errors
     /// A [`CommandError`]. Where a guard refuses, nothing was sent; where a port fails, both arms were told to hold.
     pub fn command_both(&mut self, now: Stamp, joints: &PerSide<JointVector>) -> Result<(), CommandError> {
+        self.forget_what_lies_ahead(now);
         for (side, joints) in joints.iter() {
             self.limbs.get(side).judge(now, joints)?;
         }
@@ -78,6 +80,12 @@ impl<L: Limb> GuardedPair<L> {
             }
         }
         Ok(())
+    }
+
+    fn forget_what_lies_ahead(&mut self, now: Stamp) {
+        for side in Side::BOTH {
+            self.limbs.get_mut(side).forget_what_lies_ahead(now);
+        }
     }
 
     /// Makes both arms hold where they are.

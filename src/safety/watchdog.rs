@@ -212,7 +212,10 @@ impl Watchdogs {
     pub fn tick(&mut self, now: Stamp) {
         let Some(last) = self.last_tick.replace(now) else { return };
         match now.checked_since(last) {
-            None => self.latch(Watch::Tick, "the clock went back: check the time service, then continue".into()),
+            None => {
+                self.forget_what_lies_ahead(now);
+                self.latch(Watch::Tick, "the clock went back: check the time service, then continue".into());
+            }
             Some(gap) if gap > self.settings.clock_jump => {
                 self.latch(
                     Watch::Tick,
@@ -227,6 +230,20 @@ impl Watchdogs {
             }
             Some(_) => {}
         }
+    }
+
+    /// What came in before the clock went back is old, and stays so when the clock comes to those moments again. Not so the
+    /// console's beats: who was there once is missed.
+    fn forget_what_lies_ahead(&mut self, now: Stamp) {
+        for side in Side::BOTH {
+            self.force.get_mut(side).forget_what_lies_ahead(now);
+            self.joint_stream.get_mut(side).forget_what_lies_ahead(now);
+            for joint in self.joints.get_mut(side) {
+                *joint = joint.filter(|seen| *seen <= now);
+            }
+        }
+        self.robot.forget_what_lies_ahead(now);
+        self.pose.forget_what_lies_ahead(now);
     }
 
     /// The beat pauses on purpose, as while a motion is planned with both arms at rest: the next one is not late.

@@ -78,11 +78,7 @@ impl Freshness {
 
     /// A message arrived; `header` is its own stamp where it has one.
     pub fn observe(&mut self, arrival: Stamp, header: Option<Stamp>) {
-        if self.arrivals.back().is_some_and(|last| *last > arrival) {
-            // The clock went back: what was measured with the old one means nothing.
-            self.arrivals.clear();
-            self.least_lag = None;
-        }
+        self.forget_what_lies_ahead(arrival);
         if self.arrivals.len() == REMEMBERED {
             self.arrivals.pop_front();
         }
@@ -95,6 +91,15 @@ impl Freshness {
         let lag = arrival.seconds() - header.seconds();
         self.lag = Some(lag);
         self.take_lag(arrival, lag);
+    }
+
+    /// Forgets arrivals that lie ahead of the present moment: the clock went back, and what was measured with the old one means
+    /// nothing, not even when the clock comes to those moments again.
+    pub fn forget_what_lies_ahead(&mut self, now: Stamp) {
+        if self.arrivals.back().is_some_and(|last| *last > now) {
+            self.arrivals.clear();
+            self.least_lag = None;
+        }
     }
 
     fn take_lag(&mut self, arrival: Stamp, lag: f64) {

@@ -13,6 +13,7 @@ fn a_stop_that_the_robot_does_not_confirm_in_time_sends_to_the_red_button() {
     let mut stop = StopView { latched: true, requested_at: Some(at(1000)), ..StopView::default() };
     assert_eq!(stop.phase(at(1100)), StopPhase::Requested);
     assert_eq!(stop.phase(at(1251)), StopPhase::NotConfirmed);
+    assert_eq!(stop.phase(at(200)), StopPhase::NotConfirmed, "the clock went back: nobody knows how long it was");
     stop.confirmed_at = Some(at(1012));
     assert_eq!(stop.phase(at(9000)), StopPhase::Confirmed);
     assert!((stop.confirmation_seconds().unwrap() - 0.012).abs() < 1e-9);
@@ -27,6 +28,22 @@ fn a_robot_state_does_not_outlive_its_deadline() {
     assert!(robot.fresh(at(1200)).is_some());
     assert!(robot.fresh(at(1300)).is_none());
     assert!(RobotView::default().fresh(at(0)).is_none());
+}
+
+#[test]
+fn what_came_in_before_the_clock_went_back_stays_stale_when_the_clock_comes_there_again() {
+    let fresh = Freshness { last: Some(at(1000)), deadline: 0.06 };
+    let mut snapshot = Snapshot::default();
+    snapshot.sides.left.force.freshness = fresh;
+    snapshot.body.freshness = fresh;
+    snapshot.robot.state = Some(RobotState { stamp: at(1000), ..RobotState::default() });
+    let kept = snapshot.clone();
+    snapshot.forget_what_lies_ahead(at(1000));
+    assert_eq!(snapshot, kept, "nothing lies ahead");
+    snapshot.forget_what_lies_ahead(at(300));
+    assert!(!snapshot.sides.left.force.freshness.is_fresh(at(990)));
+    assert!(!snapshot.body.freshness.is_fresh(at(990)));
+    assert_eq!(snapshot.robot.fresh(at(990)), None);
 }
 
 #[test]

@@ -33,6 +33,14 @@ fn a_clock_that_goes_back_neither_stops_an_arm_for_a_beat_nor_hurries_it() {
 }
 
 #[test]
+fn s_27_what_was_before_the_clock_went_back_does_not_count_when_the_clock_comes_there_again() {
+    // In these trials an arm was refused its place until an old command counted again, and an old force was shown as new.
+    for seed in [5_000_478, 5_000_880] {
+        assert_eq!(torture(seed).violation, None, "seed {seed}");
+    }
+}
+
+#[test]
 fn s_39_arms_that_were_slowed_or_fast_stand_in_time_after_a_hold() {
     // In these trials a hold met arms that ran at a part of their planned speed, or a joint at its highest; braking them once
     // took a beat too long.

@@ -117,7 +117,7 @@ fn grippers_are_turned_inwards_where_that_leaves_more_room_beside_the_trunk() {
     let scene = seated_beside(paths()[0]);
     let stages = stages(Side::Right, paths()[0]);
     let legs = [Leg { scene: &scene, stages: &stages }];
-    let straight = roomiest_start(&model, &legs, &orientations(), &limits).unwrap();
+    let straight = roomiest_start(&model, &legs, &orientations(), &limits, f64::NEG_INFINITY).unwrap().unwrap();
     let joints = dressing_postures(&model, &legs, &limits).unwrap();
     let turned = PerSide::from_fn(|side| model.arm(side).forward(joints.get(side)).rotation);
     let angle = turned.map(|_, rotation| rotation.angle_to(&dressing_orientation()).to_degrees());
@@ -125,8 +125,22 @@ fn grippers_are_turned_inwards_where_that_leaves_more_room_beside_the_trunk() {
     assert!(angle.right > 4.0, "{angle:?}");
     let points = turned.map(|_, rotation| rotation * Vector3::z());
     assert!(points.left.y < 0.0 && points.right.y > 0.0, "towards the middle: {points:?}");
-    let chosen = roomiest_start(&model, &legs, &turned, &limits).unwrap();
+    let chosen = roomiest_start(&model, &legs, &turned, &limits, f64::NEG_INFINITY).unwrap().unwrap();
     assert!(chosen.room > straight.room, "{} against {}", chosen.room, straight.room);
+}
+
+#[test]
+fn a_search_with_something_to_beat_finds_the_same_start_or_none() {
+    let model = RobotModel::baxter().unwrap();
+    let limits = MotionLimits::default();
+    let scene = seated_beside(paths()[0]);
+    let stages = stages(Side::Right, paths()[0]);
+    let legs = [Leg { scene: &scene, stages: &stages }];
+    let search = |to_beat| roomiest_start(&model, &legs, &orientations(), &limits, to_beat).unwrap();
+    let all = search(f64::NEG_INFINITY).unwrap();
+    let with_less_to_beat = search(all.room - 1e-6).unwrap();
+    assert_eq!((with_less_to_beat.joints, with_less_to_beat.room.to_bits()), (all.joints, all.room.to_bits()));
+    assert!(search(all.room).is_none(), "nothing has more room than the roomiest");
 }
 
 #[test]

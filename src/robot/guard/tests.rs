@@ -84,6 +84,28 @@ fn after_the_clock_went_back_the_next_command_is_a_first_one() {
 }
 
 #[test]
+fn what_was_sent_before_the_clock_went_back_does_not_count_again_when_the_clock_comes_there_once_more() {
+    let mut limb = guarded();
+    let mut joints = JointVector::from(HOME);
+    limb.command(at(1010), &joints).unwrap();
+    joints[2] += 0.06;
+    for now in (510..1200).step_by(10) {
+        limb.observe(at(now), &HOME.map(Some));
+        let what = refused(&mut limb, at(now), &joints).what;
+        assert!(matches!(what, Limit::Following { .. }), "at {now} ms: {what:?}");
+    }
+}
+
+#[test]
+fn joints_measured_before_the_clock_went_back_do_not_count_any_more() {
+    let mut limb = guarded();
+    let joints = JointVector::from(HOME);
+    for now in [500, 1010] {
+        assert_eq!(refused(&mut limb, at(now), &joints).what, Limit::Freshness { side: Side::Right }, "at {now} ms");
+    }
+}
+
+#[test]
 fn a_first_command_far_from_where_the_arm_is_is_refused() {
     let mut joints = JointVector::from(HOME);
     joints[2] += 0.06;

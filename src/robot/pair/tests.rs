@@ -106,6 +106,23 @@ fn of_two_commands_neither_is_sent_where_one_is_refused() {
 }
 
 #[test]
+fn what_was_sent_before_the_clock_went_back_never_counts_again() {
+    let (mut pair, _) = pair(&MotionLimits::default());
+    pair.command_both(at(1010), &HOME).unwrap();
+    let mut far = *HOME;
+    far.right[2] += 0.06;
+    for now in (510..1200).step_by(10) {
+        observe(&mut pair, at(now), &HOME);
+        let one = breach(pair.command(at(now), Side::Right, &far.right)).what;
+        let both = breach(pair.command_both(at(now), &far)).what;
+        assert!(
+            matches!((&one, &both), (Limit::Following { .. }, Limit::Following { .. })),
+            "{now} ms: {one:?} {both:?}"
+        );
+    }
+}
+
+#[test]
 fn the_stop_latch_closes_both_arms() {
     let (mut pair, latch) = pair(&MotionLimits::default());
     latch.store(true, Ordering::SeqCst);

@@ -128,6 +128,18 @@ fn s_27_a_clock_that_jumps_and_a_beat_that_is_late_hold() {
 }
 
 #[test]
+fn s_27_inputs_of_before_the_clock_went_back_are_old_when_the_clock_comes_there_again() {
+    let mut watchdogs = running();
+    watchdogs.tick(at(500));
+    watchdogs.acknowledge();
+    // The last inputs were those of 600 ms.
+    for now in [505, 600, 605] {
+        let verdict = watchdogs.judge(at(now));
+        assert_eq!(verdict.reaction, Hold, "at {now} ms: {}", verdict.cause);
+    }
+}
+
+#[test]
 fn s_28_a_frozen_force_is_a_fault_and_never_zero() {
     let mut watchdogs = running();
     for (count, now) in (610..).step_by(10).take(50).enumerate() {
@@ -277,7 +289,7 @@ fn s_32_acknowledging_a_cause_that_still_stands_does_not_help() {
 #[test]
 fn nothing_is_ready_before_everything_has_come_in() {
     let mut watchdogs = Watchdogs::new(WatchSettings::default());
-    assert!(watchdogs.readiness(at(0)).unwrap_err().contains("nothing has come in yet"));
+    assert!(watchdogs.readiness(at(0)).unwrap_err().contains("nothing has come in"));
     beat(&mut watchdogs, 0, Missing::Nothing);
     assert_eq!(watchdogs.readiness(at(0)), Ok(()));
 }

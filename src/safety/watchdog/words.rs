@@ -27,7 +27,7 @@ pub(super) fn late(name: &str, stream: &Freshness, now: Stamp) -> Verdict {
     }
     let deadline = stream.settings().deadline.as_millis();
     let cause = match (stream.last(), stream.age(now)) {
-        (None, _) => format!("{name}: nothing has come in yet"),
+        (None, _) => format!("{name}: nothing has come in"),
         (_, None) => format!("{name}: the clock went back"),
         _ if stream.is_ahead() => format!("{name}: its time stamps jumped ahead: check the robot's time service"),
         (_, Some(age)) => {

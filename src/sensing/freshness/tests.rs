@@ -81,6 +81,18 @@ fn a_clock_that_goes_back_leaves_nothing_fresh_until_a_new_message() {
 }
 
 #[test]
+fn what_arrived_before_the_clock_went_back_is_not_fresh_when_the_clock_comes_there_again() {
+    let mut stream = steady(100);
+    assert!(stream.is_fresh(milliseconds(1000)));
+    stream.forget_what_lies_ahead(milliseconds(500));
+    assert_eq!(stream.last(), None);
+    assert!(!stream.is_fresh(milliseconds(1000)));
+    let mut stream = steady(100);
+    stream.forget_what_lies_ahead(milliseconds(1000));
+    assert!(stream.is_fresh(milliseconds(1000)), "nothing lies ahead");
+}
+
+#[test]
 fn gaps_and_jitter_are_those_of_the_last_second() {
     let mut stream = steady(100);
     assert!(stream.jitter(milliseconds(990)) < 1e-9);
