@@ -239,8 +239,12 @@ impl Supervisor {
 
     /// Until the robot confirms the stop, it is asked again at every tick.
     fn repeat_stop(&mut self, now: Stamp) {
-        if self.protection.stop().needs_repeat(now) {
+        if self.protection.stop().needs_repeat() {
             self.ask_switch(now, SwitchRequest::Stop);
+        }
+        if self.protection.stop_mut().becomes_overdue(now) {
+            let words = "the robot does not confirm the stop: press the red button".to_owned();
+            self.log(now, Level::Error, "stop", words);
         }
     }
 

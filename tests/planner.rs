@@ -117,7 +117,7 @@ fn a_way_that_does_not_begin_at_the_arm_is_a_hold() {
 }
 
 #[test]
-fn a_silent_planner_is_a_hold_and_its_late_answer_moves_nothing() {
+fn s_25_a_silent_planner_is_a_hold_and_its_late_answer_moves_nothing() {
     let mut asked = asked();
     assert!(!moves(&pass(&mut asked.trial, 7.0)));
     assert_eq!(asked.trial.snapshot().trial.phase, TrialPhase::Holding);

@@ -9,11 +9,8 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use thiserror::Error;
 
-/// The robot answers reset and stop within 3 s and enable within 2 s, or something is wrong (the maker's own tool waits
-/// as long).
-const ANSWER_WITHIN: Duration = Duration::from_secs(3);
-/// Motors that do not come on within this span although the state looks clean point to an open stop circuit.
-const ENABLE_WITHIN: Duration = Duration::from_secs(2);
+/// The robot confirms a stop within this span, or something is wrong (the maker's own tool waits as long).
+const CONFIRM_WITHIN: Duration = Duration::from_secs(3);
 
 /// Where the way back from a stop is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,11 +82,11 @@ impl From<StopRefusal> for String {
 /// assert_eq!(latch.phase(), StopPhase::Confirmed);
 /// latch.reset(at(3), Some(&RobotState { stopped: true, ..RobotState::default() }))?;
 /// latch.observe(at(4), &RobotState::default());
-/// latch.enable(at(5), Some(&RobotState::default()))?;
+/// latch.enable(Some(&RobotState::default()))?;
 /// let enabled = RobotState { enabled: true, ready: Some(true), ..RobotState::default() };
 /// latch.observe(at(6), &enabled);
 /// assert!(latch.is_latched());
-/// latch.start(at(7), Some(&enabled))?;
+/// latch.start(Some(&enabled))?;
 /// assert!(!latch.is_latched());
 /// # Ok::<(), valet::safety::StopRefusal>(())
 /// ```
@@ -99,7 +96,7 @@ pub struct StopState {
     cause: String,
     requested_at: Option<Stamp>,
     confirmed_at: Option<Stamp>,
-    asked_at: Option<Stamp>,
+    told_overdue: bool,
 }
 
 impl StopState {
@@ -113,7 +110,7 @@ impl StopState {
             cause.clone_into(&mut self.cause);
             self.requested_at = Some(now);
             self.confirmed_at = None;
-            self.asked_at = None;
+            self.told_overdue = false;
             return true;
         }
         first
@@ -191,30 +188,15 @@ impl StopState {
 
     /// True where the stop must be asked for again: the robot has not confirmed it.
     #[must_use]
-    pub const fn needs_repeat(&self, _now: Stamp) -> bool {
+    pub const fn needs_repeat(&self) -> bool {
         matches!(self.phase, StopPhase::Requested)
     }
 
-    /// What the robot owes an answer to for too long, in words for the operator.
+    /// True once, where the robot owes its confirmation of a stop for too long: the operator has to be told.
     #[must_use]
-    pub fn overdue(&self, now: Stamp) -> Option<&'static str> {
-        let (since, within, words) = match self.phase {
-            StopPhase::Requested => {
-                (self.requested_at?, ANSWER_WITHIN, "the robot does not confirm the stop: press the red button")
-            }
-            StopPhase::Resetting => (
-                self.asked_at?,
-                ANSWER_WITHIN,
-                "the robot does not answer the reset: look at the red button and the diagnostics",
-            ),
-            StopPhase::Enabling => (
-                self.asked_at?,
-                ENABLE_WITHIN,
-                "the motors do not come on although nothing is reported: check the red button and its cable",
-            ),
-            _ => return None,
-        };
-        (now.since(since) > within).then_some(words)
+    pub fn becomes_overdue(&mut self, now: Stamp) -> bool {
+        let is_late = self.needs_repeat() && self.requested_at.is_some_and(|at| now.since(at) > CONFIRM_WITHIN);
+        is_late && !std::mem::replace(&mut self.told_overdue, is_late)
     }
 
     /// The operator's Reset: clears the robot's latch, never this one, and moves nothing.
@@ -237,7 +219,6 @@ impl StopState {
             self.request(now, "the robot reports a fault");
         }
         self.phase = StopPhase::Resetting;
-        self.asked_at = Some(now);
         Ok(())
     }
 
@@ -245,7 +226,7 @@ impl StopState {
     ///
     /// # Errors
     /// Where the robot's state is not known, it is stopped, its red button is down, or it reports a fault.
-    pub fn enable(&mut self, now: Stamp, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
+    pub fn enable(&mut self, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
         let robot = robot.ok_or(StopRefusal::StateUnknown)?;
         if robot.button == RedButton::Pressed {
             return Err(StopRefusal::ButtonDown);
@@ -256,7 +237,6 @@ impl StopState {
         if robot.error {
             return Err(StopRefusal::RobotFault);
         }
-        self.asked_at = Some(now);
         if self.phase != StopPhase::Released {
             self.phase = if robot.enabled { StopPhase::Enabled } else { StopPhase::Enabling };
         }
@@ -267,7 +247,7 @@ impl StopState {
     ///
     /// # Errors
     /// Where the robot's state is not known, it is stopped, in fault, disabled or not ready.
-    pub fn start(&mut self, now: Stamp, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
+    pub fn start(&mut self, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
         let robot = robot.ok_or(StopRefusal::StateUnknown)?;
         if robot.button == RedButton::Pressed {
             return Err(StopRefusal::ButtonDown);
@@ -285,7 +265,6 @@ impl StopState {
             return Err(StopRefusal::NotReady);
         }
         self.phase = StopPhase::Released;
-        self.asked_at = Some(now);
         Ok(())
     }
 }

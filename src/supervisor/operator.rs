@@ -168,7 +168,7 @@ impl Supervisor {
 
     fn obey_enable(&mut self, now: Stamp) -> Answer {
         let robot = self.protection.robot(now).copied();
-        self.protection.stop_mut().enable(now, robot.as_ref())?;
+        self.protection.stop_mut().enable(robot.as_ref())?;
         self.ask_switch(now, SwitchRequest::Enable);
         self.log(
             now,
@@ -192,7 +192,7 @@ impl Supervisor {
         if self.mode == Mode::Running {
             return Err("a trial runs already".into());
         }
-        self.protection.stop_mut().start(now, robot.as_ref())?;
+        self.protection.stop_mut().start(robot.as_ref())?;
         self.show_stop_progress(now);
         if self.mode == Mode::Held {
             self.show_hold(now, "after a stop: continue, withdraw or abort");

@@ -14,6 +14,9 @@ use std::time::Duration;
 const REPEAT: Duration = Duration::from_millis(250);
 /// How long a robot may take: the maker's tool gives up after 2 s for Enable and 5 s for Disable and Reset, and homing takes longer.
 const GIVE_UP: Duration = Duration::from_secs(5);
+/// When the operator is told that a robot has not followed: the maker's tool gives up as soon.
+const ENABLE_WITHIN: Duration = Duration::from_secs(2);
+const RESET_WITHIN: Duration = Duration::from_secs(3);
 
 /// One request that the robot has not followed yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +24,7 @@ pub(super) struct Asked {
     request: SwitchRequest,
     at: Stamp,
     sent: Stamp,
+    told: bool,
 }
 
 /// What becomes of a request now.
@@ -35,7 +39,16 @@ enum Fate {
 impl Asked {
     /// A request that was just sent; a stop is repeated by its own rules and none of these.
     pub(super) fn new(now: Stamp, request: SwitchRequest) -> Option<Self> {
-        (request != SwitchRequest::Stop).then_some(Self { request, at: now, sent: now })
+        (request != SwitchRequest::Stop).then_some(Self { request, at: now, sent: now, told: false })
+    }
+
+    /// The span after which the operator is told what to look at.
+    const fn within(&self) -> Duration {
+        match self.request {
+            SwitchRequest::Enable => ENABLE_WITHIN,
+            SwitchRequest::Reset | SwitchRequest::Stop => RESET_WITHIN,
+            SwitchRequest::Disable => GIVE_UP,
+        }
     }
 
     fn fate(&self, robot: Option<&RobotState>) -> Fate {
@@ -53,12 +66,25 @@ impl Asked {
 }
 
 impl Supervisor {
+    /// Tells the operator once what to look at where the robot takes longer than it should.
+    fn tell_late(&mut self, now: Stamp, asked: Asked) -> Asked {
+        if asked.told || now.since(asked.at) <= asked.within() {
+            return asked;
+        }
+        self.log(now, Level::Warning, "switch", late(asked.request).to_owned());
+        let asked = Asked { told: true, ..asked };
+        self.asked = Some(asked);
+        asked
+    }
+
     /// Sends again what the robot has not followed, or gives it up.
     pub(super) fn follow_switch(&mut self, now: Stamp) {
         let Some(asked) = self.asked else { return };
         // A robot that is not heard may be in any state: nothing is sent into it, and the time runs on.
         let robot = self.protection.robot(now).copied();
-        match asked.fate(robot.as_ref()) {
+        let fate = asked.fate(robot.as_ref());
+        let asked = if robot.is_some() && fate == Fate::Waits { self.tell_late(now, asked) } else { asked };
+        match fate {
             Fate::Followed | Fate::Void => self.asked = None,
             Fate::Waits if now.since(asked.at) > GIVE_UP => {
                 self.asked = None;
@@ -70,6 +96,19 @@ impl Supervisor {
                 self.effects.push(Effect::Switch(asked.request));
             }
             Fate::Waits => {}
+        }
+    }
+}
+
+/// What to look at where the robot does not follow. A robot whose stop circuit is open may report nothing at all.
+const fn late(request: SwitchRequest) -> &'static str {
+    match request {
+        SwitchRequest::Enable => {
+            "the motors do not come on, and the robot says nothing of a reason: check the red button and its cable"
+        }
+        SwitchRequest::Reset => "the robot does not answer the reset: look at its red button and its diagnostics",
+        SwitchRequest::Disable | SwitchRequest::Stop => {
+            "the robot does not switch its motors off: press the red button"
         }
     }
 }
@@ -121,6 +160,16 @@ mod tests {
 
         /// Beats with a robot that says this of itself; what was asked of its switch, and the errors in the log.
         fn pass(&mut self, beats: usize, robot: Option<RobotState>) -> (Vec<SwitchRequest>, Vec<String>) {
+            self.pass_at(Level::Error, beats, robot)
+        }
+
+        /// The same with the lines of any level.
+        fn pass_at(
+            &mut self,
+            wanted: Level,
+            beats: usize,
+            robot: Option<RobotState>,
+        ) -> (Vec<SwitchRequest>, Vec<String>) {
             let (mut asked, mut errors) = (Vec::new(), Vec::new());
             for _ in 0..beats {
                 self.now = self.now + BEAT;
@@ -130,7 +179,7 @@ mod tests {
                 {
                     match effect {
                         Effect::Switch(request) => asked.push(request),
-                        Effect::Log { level: Level::Error, text } => errors.push(text),
+                        Effect::Log { level, text } if level == wanted => errors.push(text),
                         _ => {}
                     }
                 }
@@ -181,6 +230,26 @@ mod tests {
             errors.iter().all(|text| text.contains("was not enabled within 5 s") && text.contains("set_super_enable"))
         );
         assert_eq!(bench.pass(200, Some(DISABLED)).0, []);
+    }
+
+    #[test]
+    fn s_09_motors_that_do_not_come_on_within_2_s_point_to_the_button_and_its_cable() {
+        let mut bench = Bench::new();
+        bench.ask(Command::Enable);
+        let cable = |told: &[String]| told.iter().filter(|text| text.contains("cable")).count();
+        assert_eq!(cable(&bench.pass_at(Level::Warning, 199, Some(DISABLED)).1), 0);
+        assert_eq!(cable(&bench.pass_at(Level::Warning, 250, Some(DISABLED)).1), 1, "told once");
+    }
+
+    #[test]
+    fn s_09_a_stop_that_the_robot_does_not_confirm_within_3_s_points_to_the_red_button() {
+        let mut bench = Bench::new();
+        bench.ask(Command::Stop);
+        let running = RobotState { enabled: true, ready: Some(true), ..DISABLED };
+        assert_eq!(bench.pass(300, Some(running)).1, Vec::<String>::new());
+        let (asked, told) = bench.pass(200, Some(running));
+        assert!(matches!(told.as_slice(), [text] if text.contains("red button")), "{told:?}");
+        assert_eq!(asked.len(), 200, "and it is asked for at every beat all the while");
     }
 
     #[test]

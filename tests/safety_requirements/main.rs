@@ -11,9 +11,12 @@
 #![allow(clippy::float_cmp, reason = "an arm that is held is commanded the very same joints")]
 
 mod catch;
+mod force;
 mod hold;
+mod inputs;
 mod limits;
 mod numbers;
 mod room;
 mod services;
+mod switch;
 mod withdrawal;

@@ -24,6 +24,8 @@ pub(super) struct Room {
     pub(super) sent: Vec<PerSide<Option<JointVector>>>,
     pub(super) told: Vec<Effect>,
     pub(super) measured: PerSide<Option<JointVector>>,
+    /// True where what is asked of the robot's switch does not arrive.
+    pub(super) switch_is_cut: bool,
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "stands where a fault may swallow the input")]
@@ -48,6 +50,7 @@ impl Room {
             sent: Vec::new(),
             told: Vec::new(),
             measured: PerSide::default(),
+            switch_is_cut: false,
         };
         room.beats(100, unaltered);
         assert!(room.ask(Command::Enable).is_accepted());
@@ -73,7 +76,7 @@ impl Room {
                     self.world.command_joints(*side, joints, self.now);
                     *sent.get_mut(*side) = Some(*joints);
                 }
-                Effect::Switch(request) => self.world.switch(*request, self.now),
+                Effect::Switch(request) if !self.switch_is_cut => self.world.switch(*request, self.now),
                 Effect::FindStart(order) => answer = Some(order.answer(self.supervisor.model())),
                 _ => {}
             }
@@ -91,15 +94,28 @@ impl Room {
         self.now = self.now + BEAT;
         let said: Vec<Input> = self.world.step(self.now).into_inputs().filter_map(alter).collect();
         for input in said {
-            if let Input::Joints(sample) = &input {
-                self.measured = sample.positions.map(|_, joints| {
-                    let known: Option<Vec<f64>> = joints.iter().copied().collect();
-                    known.map(|known| JointVector::from_column_slice(&known))
-                });
-            }
+            self.measure(&input);
             self.step(&input);
         }
         self.step(&Input::Tick);
+    }
+
+    fn measure(&mut self, input: &Input) {
+        if let Input::Joints(sample) = input {
+            self.measured = sample.positions.map(|_, joints| {
+                let known: Option<Vec<f64>> = joints.iter().copied().collect();
+                known.map(|known| JointVector::from_column_slice(&known))
+            });
+        }
+    }
+
+    /// The world goes on for some beats, and nobody decides anything.
+    pub(super) fn world_alone(&mut self, beats: usize) {
+        for _ in 0..beats {
+            self.now = self.now + BEAT;
+            let said: Vec<Input> = self.world.step(self.now).into_inputs().collect();
+            said.iter().for_each(|input| self.measure(input));
+        }
     }
 
     pub(super) fn beats(&mut self, count: usize, mut alter: impl FnMut(Input) -> Option<Input>) {

@@ -27,7 +27,7 @@ const WAYS: [&[&str]; 16] = [
 ];
 
 #[test]
-fn the_stop_key_works_on_every_screen_dialog_field_size_and_situation() {
+fn s_43_the_stop_key_works_on_every_screen_dialog_field_size_and_situation() {
     for situation in Situation::ALL {
         for watermark in [Watermark::Live, Watermark::Watch, Watermark::Replay] {
             for screen in Screen::ALL {

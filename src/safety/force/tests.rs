@@ -143,6 +143,8 @@ fn s_18_a_steady_bias_is_taken_away_by_a_zero_and_the_cap_holds_without_one() {
         guard.observe(&sample(index, bias));
     }
     assert_eq!(guard.verdict().reaction, Advise);
+    let beyond = Vector::new(0.0, 0.0, 36.0);
+    assert_eq!(guard.clone().observe(&sample(60, beyond)).reaction, Stop, "without a zero the cap holds as well");
     guard.tare(at(60)).unwrap();
     assert_eq!(guard.observe(&sample(61, bias)).reaction, Clear);
     assert!(guard.load().unwrap().norm() < 1e-9);

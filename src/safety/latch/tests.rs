@@ -38,16 +38,16 @@ fn stopped() -> StopState {
 #[test]
 fn s_01_reset_enable_and_start_are_three_acts_in_this_order() {
     let mut latch = stopped();
-    assert_eq!(latch.enable(at(20), Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
-    assert_eq!(latch.start(at(20), Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
+    assert_eq!(latch.enable(Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
+    assert_eq!(latch.start(Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
     latch.reset(at(30), Some(&stopped_by_software())).unwrap();
     latch.observe(at(40), &disabled());
     assert_eq!((latch.phase(), latch.is_latched()), (StopPhase::Disabled, true));
-    assert_eq!(latch.start(at(50), Some(&disabled())), Err(StopRefusal::EnableFirst));
-    latch.enable(at(60), Some(&disabled())).unwrap();
+    assert_eq!(latch.start(Some(&disabled())), Err(StopRefusal::EnableFirst));
+    latch.enable(Some(&disabled())).unwrap();
     latch.observe(at(70), &running());
     assert_eq!((latch.phase(), latch.is_latched()), (StopPhase::Enabled, true));
-    latch.start(at(80), Some(&running())).unwrap();
+    latch.start(Some(&running())).unwrap();
     assert!(!latch.is_latched());
 }
 
@@ -58,17 +58,17 @@ fn s_02_reset_alone_leaves_the_latch_closed_whatever_the_robot_then_says() {
         latch.reset(at(20), Some(&stopped_by_software())).unwrap();
         latch.observe(at(30), &after);
         assert!(latch.is_latched(), "{after:?}");
-        assert!(latch.start(at(40), Some(&after)).is_err(), "{after:?}");
+        assert!(latch.start(Some(&after)).is_err(), "{after:?}");
     }
 }
 
 #[test]
 fn s_03_enable_is_refused_while_the_robot_is_stopped_and_resets_nothing() {
     let mut latch = StopState::default();
-    assert_eq!(latch.enable(at(0), Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
+    assert_eq!(latch.enable(Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
     let mut latch = stopped();
     latch.reset(at(20), Some(&stopped_by_software())).unwrap();
-    assert_eq!(latch.enable(at(30), Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
+    assert_eq!(latch.enable(Some(&stopped_by_software())), Err(StopRefusal::ResetFirst));
     assert_eq!(latch.phase(), StopPhase::Resetting);
 }
 
@@ -77,8 +77,8 @@ fn s_04_reset_is_refused_while_the_red_button_is_down_and_allowed_once_it_is_rel
     let mut latch = StopState::default();
     latch.observe(at(0), &button_down());
     assert_eq!(latch.reset(at(10), Some(&button_down())), Err(StopRefusal::ButtonDown));
-    assert_eq!(latch.enable(at(10), Some(&button_down())), Err(StopRefusal::ButtonDown));
-    assert_eq!(latch.start(at(10), Some(&button_down())), Err(StopRefusal::ButtonDown));
+    assert_eq!(latch.enable(Some(&button_down())), Err(StopRefusal::ButtonDown));
+    assert_eq!(latch.start(Some(&button_down())), Err(StopRefusal::ButtonDown));
     latch.observe(at(20), &button_released());
     assert_eq!(latch.reset(at(30), Some(&button_released())), Ok(()));
 }
@@ -88,10 +88,10 @@ fn s_05_a_stop_is_confirmed_only_by_the_robot_and_asked_for_again_until_then() {
     let mut latch = StopState::default();
     latch.request(at(0), "the operator");
     latch.observe(at(10), &running());
-    assert!(!latch.is_confirmed() && latch.needs_repeat(at(10)));
+    assert!(!latch.is_confirmed() && latch.needs_repeat());
     assert_eq!(latch.reset(at(15), Some(&running())), Err(StopRefusal::NotConfirmed));
     latch.observe(at(20), &stopped_by_software());
-    assert!(latch.is_confirmed() && !latch.needs_repeat(at(20)));
+    assert!(latch.is_confirmed() && !latch.needs_repeat());
     assert_eq!((latch.requested_at(), latch.confirmed_at()), (Some(at(0)), Some(at(20))));
 }
 
@@ -124,12 +124,12 @@ fn s_07_a_stop_on_the_way_back_begins_the_way_anew() {
             latch.observe(at(30), &disabled());
         }
         if acts > 2 {
-            latch.enable(at(40), Some(&disabled())).unwrap();
+            latch.enable(Some(&disabled())).unwrap();
             latch.observe(at(50), &running());
         }
         latch.request(at(60), "again");
-        assert!(latch.start(at(70), Some(&running())).is_err(), "after {acts} acts");
-        assert!(latch.enable(at(70), Some(&running())).is_err(), "after {acts} acts");
+        assert!(latch.start(Some(&running())).is_err(), "after {acts} acts");
+        assert!(latch.enable(Some(&running())).is_err(), "after {acts} acts");
     }
 }
 
@@ -142,33 +142,31 @@ fn s_08_the_first_cause_and_its_time_stay() {
 }
 
 #[test]
-fn s_09_motors_that_do_not_come_on_point_to_the_button_and_its_cable() {
-    let mut latch = stopped();
-    latch.reset(at(20), Some(&stopped_by_software())).unwrap();
-    assert_eq!(latch.overdue(at(3000)), None);
-    assert!(latch.overdue(at(3021)).unwrap().contains("reset"));
-    latch.observe(at(3030), &disabled());
-    latch.enable(at(3040), Some(&disabled())).unwrap();
-    assert_eq!(latch.overdue(at(5000)), None);
-    assert!(latch.overdue(at(5041)).unwrap().contains("cable"));
-    let mut unanswered = StopState::default();
-    unanswered.request(at(0), "the operator");
-    assert!(unanswered.overdue(at(3001)).unwrap().contains("red button"));
+fn s_09_a_stop_that_is_not_confirmed_within_3_s_is_told_once() {
+    let mut latch = StopState::default();
+    latch.request(at(0), "the operator");
+    assert!(!latch.becomes_overdue(at(3000)));
+    assert!(latch.becomes_overdue(at(3001)) && !latch.becomes_overdue(at(3010)), "once");
+    latch.observe(at(3020), &stopped_by_software());
+    latch.reset(at(3030), Some(&stopped_by_software())).unwrap();
+    latch.request(at(4000), "again");
+    assert!(!latch.becomes_overdue(at(6999)) && latch.becomes_overdue(at(7001)), "and anew for the next stop");
+    assert!(!stopped().becomes_overdue(at(9000)), "a confirmed stop owes nothing");
 }
 
 #[test]
 fn s_10_start_needs_a_robot_that_is_known_enabled_ready_and_without_fault() {
     let mut latch = StopState::default();
-    assert_eq!(latch.start(at(0), None), Err(StopRefusal::StateUnknown));
-    assert_eq!(latch.enable(at(0), None), Err(StopRefusal::StateUnknown));
+    assert_eq!(latch.start(None), Err(StopRefusal::StateUnknown));
+    assert_eq!(latch.enable(None), Err(StopRefusal::StateUnknown));
     assert_eq!(latch.reset(at(0), None), Err(StopRefusal::StateUnknown));
-    assert_eq!(latch.start(at(0), Some(&disabled())), Err(StopRefusal::EnableFirst));
+    assert_eq!(latch.start(Some(&disabled())), Err(StopRefusal::EnableFirst));
     let homing = RobotState { ready: Some(false), ..running() };
-    assert_eq!(latch.start(at(0), Some(&homing)), Err(StopRefusal::NotReady));
+    assert_eq!(latch.start(Some(&homing)), Err(StopRefusal::NotReady));
     let faulty = RobotState { error: true, ..running() };
-    assert_eq!(latch.start(at(0), Some(&faulty)), Err(StopRefusal::RobotFault));
+    assert_eq!(latch.start(Some(&faulty)), Err(StopRefusal::RobotFault));
     let older_release = RobotState { ready: None, ..running() };
-    assert_eq!(latch.start(at(0), Some(&older_release)), Ok(()));
+    assert_eq!(latch.start(Some(&older_release)), Ok(()));
 }
 
 #[test]
@@ -177,8 +175,8 @@ fn s_01_somebody_else_who_resets_and_enables_does_not_open_the_latch() {
     latch.observe(at(20), &disabled());
     latch.observe(at(30), &running());
     assert!(latch.is_latched());
-    assert_eq!(latch.enable(at(40), Some(&running())), Err(StopRefusal::ResetFirst));
-    assert_eq!(latch.start(at(40), Some(&running())), Err(StopRefusal::ResetFirst));
+    assert_eq!(latch.enable(Some(&running())), Err(StopRefusal::ResetFirst));
+    assert_eq!(latch.start(Some(&running())), Err(StopRefusal::ResetFirst));
 }
 
 #[test]
@@ -186,11 +184,11 @@ fn motors_that_go_off_again_before_start_must_be_enabled_again() {
     let mut latch = stopped();
     latch.reset(at(20), Some(&stopped_by_software())).unwrap();
     latch.observe(at(30), &disabled());
-    latch.enable(at(40), Some(&disabled())).unwrap();
+    latch.enable(Some(&disabled())).unwrap();
     latch.observe(at(50), &running());
     latch.observe(at(60), &disabled());
     assert_eq!(latch.phase(), StopPhase::Disabled);
-    assert_eq!(latch.start(at(70), Some(&running())), Err(StopRefusal::EnableFirst));
+    assert_eq!(latch.start(Some(&running())), Err(StopRefusal::EnableFirst));
 }
 
 #[test]
@@ -256,8 +254,8 @@ proptest! {
                     }
                 }
                 Act::Reset => if latch.reset(now, Some(&robot)).is_ok() { accepted = 1 },
-                Act::Enable => if latch.enable(now, Some(&robot)).is_ok() && accepted == 1 { accepted = 2 },
-                Act::Start => if latch.start(now, Some(&robot)).is_ok() {
+                Act::Enable => if latch.enable(Some(&robot)).is_ok() && accepted == 1 { accepted = 2 },
+                Act::Start => if latch.start(Some(&robot)).is_ok() {
                     prop_assert!(accepted >= 2, "opened after {} acts", accepted);
                     prop_assert!(robot.enabled && !robot.stopped);
                     accepted = 3;
