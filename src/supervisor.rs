@@ -310,7 +310,8 @@ impl Supervisor {
         self.show_stop_progress(now);
         if was_enabled && !state.enabled {
             // Motors are off: whatever was planned is void, and must not be taken up where the arms then are.
-            self.hold(now, "the robot was disabled");
+            let others = self.protection.others_switched().unwrap_or_else(|| "the robot was disabled".to_owned());
+            self.hold(now, &others);
             self.drive.drop_motion();
         }
     }

@@ -72,6 +72,11 @@ impl Protection {
         })
     }
 
+    /// What is said of motors that somebody else switched, where that is what holds.
+    pub(super) fn others_switched(&self) -> Option<String> {
+        self.watchdogs.latched().find_map(|(watch, cause)| (watch == Watch::Enable).then(|| cause.to_owned()))
+    }
+
     pub(super) const fn stop(&self) -> &StopState {
         &self.stop
     }
