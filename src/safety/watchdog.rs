@@ -269,7 +269,10 @@ impl Watchdogs {
                 self.latch(*watch, verdict.cause.clone());
             }
         }
-        let latched = self.latched.values().map(|cause| Verdict::new(Reaction::Hold, cause.clone()));
+        // A clock that jumped is why everything else is late: it is told first.
+        let clock = self.latched.get(&Watch::Tick);
+        let latched =
+            clock.into_iter().chain(self.latched.values()).map(|cause| Verdict::new(Reaction::Hold, cause.clone()));
         Verdict::strictest(latched.chain(present.into_iter().map(|(_, verdict)| verdict)))
     }
 
