@@ -7,10 +7,12 @@
 
 mod eigen;
 mod expectation;
+mod lanes;
 
 use super::mixture::{Mixture, MixtureError};
 use super::random::SplitMix64;
 use expectation::State;
+use lanes::Cloud;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -147,13 +149,14 @@ pub fn fit_from<const D: usize>(
     let means = means.collect::<Result<Vec<_>, _>>()?;
     let (mean, covariance) = moments(points);
     let floored = eigen::floored(&covariance, settings.floor * settings.floor);
-    let one = State::new(points, vec![mean], floored, settings.floor);
+    let cloud = Cloud::new(points, mean);
+    let one = State::new(&cloud, vec![mean], floored, settings.floor);
     if points.len() < LEAST_POINTS || means.is_empty() {
         return finish(&one, settings, 0);
     }
     let initial = covariance.trace() / D as f64 * INITIAL_SHARE;
     let spread = eigen::floored(&SMatrix::from_diagonal_element(initial), settings.floor * settings.floor);
-    let state = State::new(points, means, spread, settings.floor);
+    let state = State::new(&cloud, means, spread, settings.floor);
     match anneal(state, settings) {
         (Some(best), sweeps) => finish(&best, settings, sweeps),
         (None, sweeps) => finish(&one, settings, sweeps),
