@@ -57,8 +57,12 @@ class Valet:
                 self.changed.notify_all()
 
     def type(self, line):
-        self.process.stdin.write(line + "\n")
-        self.process.stdin.flush()
+        try:
+            self.process.stdin.write(line + "\n")
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            said = "\n".join(self.lines[-30:])
+            raise AssertionError("valet has ended with %s before `%s`:\n%s" % (self.process.wait(), line, said)) from None
 
     def mark(self):
         """Where the lines end now: what is waited for must come after it."""
@@ -89,6 +93,28 @@ class Valet:
             if time.monotonic() > end:
                 raise AssertionError("never accepted: " + line)
             time.sleep(0.3)
+
+    def until_ended(self, patience):
+        """Follows a trial of one iteration an arm to its end and returns that line.
+
+        As an operator does: each go-ahead is given, a hold under load is continued, and an arm that is pulled is withdrawn.
+        """
+        end, seen, beat = time.monotonic() + patience, 0, 0
+        while time.monotonic() < end and self.process.poll() is None:
+            lines = self.lines[seen:]
+            seen += len(lines)
+            beat += 1
+            word = "continue" if beat % 2 else "go-ahead"
+            for line in lines:
+                if line.startswith("the trial is "):
+                    return line
+                if "iteration 1 begins" in line:
+                    self.type("finish-after-this")
+                if "continue: refused" in line and "pause from" in line:
+                    word = "withdraw"
+            self.type(word)
+            time.sleep(1.0)
+        raise AssertionError("the trial did not end:\n" + "\n".join(self.lines[-60:]))
 
     def end(self):
         if self.process.poll() is None:
