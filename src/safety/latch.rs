@@ -222,11 +222,8 @@ impl StopState {
         Ok(())
     }
 
-    /// The operator's Enable: switches the motors on. It never resets first.
-    ///
-    /// # Errors
-    /// Where the robot's state is not known, it is stopped, its red button is down, or it reports a fault.
-    pub fn enable(&mut self, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
+    /// The robot's state, where neither it nor the latch says that it is stopped or in fault.
+    fn robot_without_stop<'a>(&self, robot: Option<&'a RobotState>) -> Result<&'a RobotState, StopRefusal> {
         let robot = robot.ok_or(StopRefusal::StateUnknown)?;
         if robot.button == RedButton::Pressed {
             return Err(StopRefusal::ButtonDown);
@@ -237,6 +234,15 @@ impl StopState {
         if robot.error {
             return Err(StopRefusal::RobotFault);
         }
+        Ok(robot)
+    }
+
+    /// The operator's Enable: switches the motors on. It never resets first.
+    ///
+    /// # Errors
+    /// Where the robot's state is not known, it is stopped, its red button is down, or it reports a fault.
+    pub fn enable(&mut self, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
+        let robot = self.robot_without_stop(robot)?;
         if self.phase != StopPhase::Released {
             self.phase = if robot.enabled { StopPhase::Enabled } else { StopPhase::Enabling };
         }
@@ -248,16 +254,7 @@ impl StopState {
     /// # Errors
     /// Where the robot's state is not known, it is stopped, in fault, disabled or not ready.
     pub fn start(&mut self, robot: Option<&RobotState>) -> Result<(), StopRefusal> {
-        let robot = robot.ok_or(StopRefusal::StateUnknown)?;
-        if robot.button == RedButton::Pressed {
-            return Err(StopRefusal::ButtonDown);
-        }
-        if robot.stopped || matches!(self.phase, StopPhase::Requested | StopPhase::Confirmed | StopPhase::Resetting) {
-            return Err(StopRefusal::ResetFirst);
-        }
-        if robot.error {
-            return Err(StopRefusal::RobotFault);
-        }
+        let robot = self.robot_without_stop(robot)?;
         if !robot.enabled || self.phase == StopPhase::Disabled {
             return Err(StopRefusal::EnableFirst);
         }
