@@ -2,6 +2,7 @@
 
 use crate::config::SecretError;
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -10,7 +11,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum JournalError {
     /// The file cannot be read or written.
-    #[error("{path}: {source}. Check that the folder exists, can be written to and has space")]
+    #[error("{path}: {source}: {}", what_to_do(source.kind()))]
     File {
         /// Which file.
         path: PathBuf,
@@ -54,6 +55,15 @@ pub enum JournalError {
     Secret(#[from] SecretError),
 }
 
+fn what_to_do(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::NotFound => "check the path: there is no such file or folder",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => "check who may read and write there",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room on the disk, or record elsewhere",
+        _ => "check that the disk is there, and that the path names a file on it",
+    }
+}
+
 impl JournalError {
     pub(super) fn file(path: &Path, source: std::io::Error) -> Self {
         Self::File { path: path.to_path_buf(), source }
@@ -80,5 +90,21 @@ pub struct Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "at byte {}: {}", self.offset, self.what)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_cannot_be_used_is_told_with_what_would_help() {
+        let told = |kind: ErrorKind| JournalError::file(Path::new("/tmp/a.mcap"), kind.into()).to_string();
+        assert!(
+            told(ErrorKind::NotFound).contains("/tmp/a.mcap") && told(ErrorKind::NotFound).contains("check the path")
+        );
+        assert!(told(ErrorKind::PermissionDenied).contains("who may read"));
+        assert!(told(ErrorKind::StorageFull).contains("make room"));
+        assert!(told(ErrorKind::IsADirectory).contains("names a file"));
     }
 }
