@@ -62,9 +62,10 @@ fn trial(person: &SimulatedPerson, seed: u64) -> Seen {
             }
         }
     });
-    seen.peak = forces.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    seen.peak = forces.iter().map(Vector::norm).fold(0.0, f64::max);
     seen.unrest = root_mean_square(forces.iter().zip(forces.iter().skip(5)).map(|(before, after)| after - before));
-    seen.elbow_unrest = root_mean_square(elbows.windows(2).map(|pair| pair[1] - pair[0]));
+    seen.elbow_unrest =
+        root_mean_square(elbows.iter().zip(elbows.iter().skip(1)).map(|(before, after)| after - before));
     seen.sunk = elbows.first().map_or(0.0, |first| first.z) - elbows.last().map_or(0.0, |last| last.z);
     seen
 }
