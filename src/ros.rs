@@ -4,6 +4,7 @@
 //! transport does badly (a master that hangs or restarts, publishers that go silent, callbacks that panic). It decides
 //! nothing, blocks no thread of the core and prints nothing.
 
+pub mod checked;
 pub mod decode;
 mod definitions;
 pub mod ears;

@@ -7,6 +7,7 @@ mod camera;
 
 pub use camera::{DepthPicture, SimulatedCamera};
 
+use super::checked::{Checked, Measured};
 use super::encode;
 use super::error::RosError;
 use super::link::advertise;
@@ -279,13 +280,13 @@ fn listen(commands: &Sender<Command>) -> Result<Vec<Subscriber>, RosError> {
     Ok(all)
 }
 
-fn on<T: Message>(
+fn on<T: Measured>(
     topic: &str,
     commands: &Sender<Command>,
     read: impl Fn(T) -> Option<Command> + Send + 'static,
 ) -> Result<Subscriber, RosError> {
     let commands = commands.clone();
-    let callback = move |message| {
+    let callback = move |Checked(message): Checked<T>| {
         if let Some(command) = read(message) {
             // Where more commands wait than a beat can take, the newest is as good as the one after it.
             let _ = commands.try_send(command);

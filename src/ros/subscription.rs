@@ -3,13 +3,14 @@
 //! rosrust kills a callback for ever when it panics, and never reconnects a link that broke while its publisher lived: so
 //! each callback is caught, and the watch may make the subscription anew.
 
+use super::checked::{Checked, Measured};
 use super::definitions::Definition;
 use super::error::RosError;
 use super::monitor::{Monitor, now};
 use super::node::resolved;
 use crate::supervisor::{Input, LinkEvent};
 use crate::time::Stamp;
-use rosrust::{Message, Subscriber};
+use rosrust::Subscriber;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -51,7 +52,7 @@ impl Subscription {
     ///
     /// # Errors
     /// Where the master does not register it.
-    pub(super) fn new<T: Message>(
+    pub(super) fn new<T: Measured>(
         need: TopicNeed,
         sink: &Sink,
         decode: impl Fn(T) -> Decoded + Send + Sync + 'static,
@@ -62,7 +63,7 @@ impl Subscription {
         let (decode, sink, watched) = (Arc::new(decode), Arc::clone(sink), monitor.clone());
         let make: Make = Box::new(move || {
             let (decode, sink, monitor) = (Arc::clone(&decode), Arc::clone(&sink), watched.clone());
-            let callback = move |message: T| receive(message, decode.as_ref(), &sink, &monitor);
+            let callback = move |Checked(message): Checked<T>| receive(message, decode.as_ref(), &sink, &monitor);
             rosrust::subscribe(need.topic, need.queue, callback)
                 .map_err(|error| RosError::registration(need.topic, error))
         });

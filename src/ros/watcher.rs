@@ -3,6 +3,7 @@
 //! It advertises no topic but the software stop, so that it cannot command anything. The stop goes to the robot itself and to
 //! the watched node's `~stop`: either is enough, and neither waits for the other.
 
+use super::checked::Checked;
 use super::decode::{self, AnyAssemblyState};
 use super::error::RosError;
 use super::link::{StopPublisher, advertise};
@@ -58,8 +59,10 @@ impl WatchLink {
         let (snapshots, robot) = (Arc::clone(&seen), Arc::clone(&seen));
         let topic = format!("{watched}/snapshot");
         let subscribers = [
-            rosrust::subscribe(&topic, QUEUE, move |message: valet_msgs::Snapshot| take(&snapshots, &message.cbor))
-                .map_err(|error| RosError::registration(&topic, error))?,
+            rosrust::subscribe(&topic, QUEUE, move |Checked(message): Checked<valet_msgs::Snapshot>| {
+                take(&snapshots, &message.cbor)
+            })
+            .map_err(|error| RosError::registration(&topic, error))?,
             rosrust::subscribe("/robot/state", QUEUE, move |message: AnyAssemblyState| {
                 let state = decode::robot_state(&message, now());
                 let mut seen = robot.lock().unwrap_or_else(PoisonError::into_inner);
