@@ -8,9 +8,14 @@ use super::look::Look;
 use super::noise::PixelRandom;
 use super::{Scene, looking_at};
 use crate::body::{PerSide, Side};
-use crate::geometry::{Point, Pose, Vector};
+use crate::geometry::{Point, Pose, Vector, closest_on_segment};
 use crate::vision::Intrinsics;
 use nalgebra::Rotation3;
+
+/// Half the thickness of a forearm or hand, in metres: arms keep so far from the body and from each other.
+const LIMB: f64 = 0.035;
+/// Postures that run through the body are drawn again, so often at most.
+const MOST_TRIES: usize = 50;
 
 /// A simulated person of a training or test set.
 #[derive(Clone, Copy, Debug)]
@@ -80,11 +85,16 @@ impl Subject {
     pub fn at_random(&self, frame: u64) -> Sampled {
         let mut random = PixelRandom(self.seed.wrapping_mul(0x51_7CC1) ^ frame.wrapping_mul(0x9E37_79B9));
         let camera = random_camera(&mut random);
-        let posture = PerSide::from_fn(|_| random_angles(&mut random));
         let mut look = self.look;
         look.hand_turn = random.between(-1.6, 1.6);
         look.finger_bend = random.between(0.0, 1.5);
-        let arms = self.arms(&posture, &mut random);
+        let mut arms = self.arms(&PerSide::from_fn(|_| random_angles(&mut random)), &mut random);
+        for _ in 0..MOST_TRIES {
+            if self.is_free(&arms) {
+                break;
+            }
+            arms = self.arms(&PerSide::from_fn(|_| random_angles(&mut random)), &mut random);
+        }
         Sampled { scene: Scene::seated(&arms, &look, &camera.1), camera: camera.0 }
     }
 
@@ -101,6 +111,31 @@ impl Subject {
         };
         let arms = self.arms(&posture, &mut random);
         Sampled { scene: Scene::seated(&arms, &self.look, &mount), camera }
+    }
+
+    /// Whether neither arm runs through the trunk, the thighs, the head or the other arm.
+    fn is_free(&self, arms: &PerSide<ArmPoints>) -> bool {
+        let half = self.body.shoulder_breadth_metres() / 2.0;
+        let depth = self.look.chest_depth.max(self.look.belly);
+        let in_trunk = |point: &Point| {
+            let (ahead, aside) = (point.x / (depth + LIMB), point.y / (half * 0.95 + 0.5 * LIMB));
+            point.z < 0.0 && point.z > -0.6 && ahead * ahead + aside * aside < 1.0
+        };
+        let in_lap = |point: &Point| point.z < -0.53 + self.look.thigh && point.x > -0.1 && point.y.abs() < 0.24;
+        let in_head = |point: &Point| (point - Point::new(0.02, 0.0, 0.22)).norm() < 0.12 + LIMB;
+        let arm_free = |points: &ArmPoints| {
+            let middle = nalgebra::center(&points.elbow, &points.wrist);
+            [points.elbow, middle, points.wrist, points.hand]
+                .iter()
+                .all(|point| !in_trunk(point) && !in_lap(point) && !in_head(point))
+        };
+        let between = [(arms.left.elbow, arms.left.wrist), (arms.left.wrist, arms.left.hand)];
+        let crossed = between.iter().any(|(start, end)| {
+            [arms.right.elbow, arms.right.wrist, arms.right.hand]
+                .iter()
+                .any(|point| (closest_on_segment(point, start, end) - point).norm() < 2.0 * LIMB)
+        });
+        arm_free(&arms.left) && arm_free(&arms.right) && !crossed
     }
 
     fn arms(&self, posture: &PerSide<ArmAngles>, random: &mut PixelRandom) -> PerSide<ArmPoints> {
@@ -123,18 +158,34 @@ impl Subject {
     }
 }
 
+/// Postures of somebody who sits and waits, moves an arm when asked to, or is being dressed; some are beyond that.
 fn random_angles(random: &mut PixelRandom) -> ArmAngles {
-    let elevation = if random.uniform() < 0.35 { random.between(2.0, 40.0) } else { random.between(30.0, 125.0) };
-    let plane = if elevation > 60.0 { random.between(-30.0, 100.0) } else { random.between(-50.0, 110.0) };
+    let kind = random.uniform();
+    if kind < 0.2 {
+        return resting(random);
+    }
+    let wide = kind > 0.85;
+    let elevation = if wide { random.between(30.0, 125.0) } else { random.between(8.0, 100.0) };
+    let backward = if elevation > 60.0 { -15.0 } else { -40.0 };
     ArmAngles {
         elevation_degrees: elevation,
-        plane_degrees: plane,
-        rotation_degrees: random.between(-70.0, 90.0),
-        elbow_degrees: if random.uniform() < 0.3 { random.between(0.0, 15.0) } else { random.between(5.0, 125.0) },
+        plane_degrees: random.between(backward, if wide { 105.0 } else { 90.0 }),
+        rotation_degrees: if wide { random.between(-70.0, 90.0) } else { random.between(-40.0, 60.0) },
+        elbow_degrees: if random.uniform() < 0.25 { random.between(0.0, 15.0) } else { random.between(5.0, 115.0) },
     }
 }
 
-/// A camera above the neck: up to 30 degrees ahead of it, up to 50 behind, a little to a side, turned a little.
+/// Arms that hang, or lie in the lap or on rests.
+fn resting(random: &mut PixelRandom) -> ArmAngles {
+    ArmAngles {
+        elevation_degrees: random.between(3.0, 35.0),
+        plane_degrees: random.between(-30.0, 80.0),
+        rotation_degrees: random.between(-45.0, 25.0),
+        elbow_degrees: random.between(5.0, 100.0),
+    }
+}
+
+/// A camera above the neck: up to 26 degrees ahead of it, up to 49 behind, a little to a side, turned a little.
 fn random_camera(random: &mut PixelRandom) -> (Intrinsics, Pose) {
     let focal = random.between(515.0, 585.0);
     let camera = Intrinsics {
@@ -144,7 +195,7 @@ fn random_camera(random: &mut PixelRandom) -> (Intrinsics, Pose) {
         cy: 239.5 + random.between(-8.0, 8.0),
     };
     let neck = Point::new(0.0, 0.0, 0.08);
-    let behind = random.between(-0.52, 0.6) + random.between(-0.2, 0.25);
+    let behind = random.between(-0.35, 0.7) + random.between(-0.1, 0.15);
     let aside = random.between(-0.2, 0.2);
     let distance = random.between(0.8, 1.55);
     let direction = Vector::new(-behind.sin(), aside.sin(), behind.cos()).normalize();
