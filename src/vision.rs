@@ -10,6 +10,7 @@ pub mod foreground;
 pub mod generic;
 pub mod joints;
 pub mod labels;
+mod neck;
 pub mod part;
 pub mod probe;
 pub mod training;

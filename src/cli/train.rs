@@ -64,6 +64,9 @@ pub(super) struct Arguments {
     /// Thresholds for each feature.
     #[arg(long, default_value_t = Settings::default().thresholds)]
     thresholds: usize,
+    /// Share of a node's features that look at the way and the place from the neck; 0 is the thesis' equation 3.1 alone.
+    #[arg(long, default_value_t = 0.5)]
+    neck_share: f64,
     /// Seed of everything random, the simulated people too.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -156,6 +159,7 @@ fn settings(arguments: &Arguments, tree: u64) -> Settings {
         thresholds: arguments.thresholds,
         depth: arguments.depth,
         smallest: if arguments.generic { GENERIC_SMALLEST } else { Settings::default().smallest },
+        neck_share: arguments.neck_share,
         seed: arguments.seed.wrapping_add(tree.wrapping_mul(0x9E37_79B9)),
         ..Settings::default()
     }

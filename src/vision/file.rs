@@ -3,8 +3,9 @@
 //! Layout, little endian: magic, version, length of the header, header (JSON), for each tree its nodes and leaves, and the
 //! SHA-256 of everything before. Children must follow level by level, each node with exactly one parent: so there are no cycles.
 
+use super::neck::MAPS;
 use super::part::CLASSES;
-use super::probe::BACKGROUND;
+use super::probe::{BACKGROUND, PLANES};
 use super::tree::{Forest, LEAF, Leaf, Node, Tree, VOTED, Vote};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -12,7 +13,9 @@ use thiserror::Error;
 
 const MAGIC: &[u8; 8] = b"valetRDF";
 /// The version of the layout and of the conventions in [`super::part`] and [`super::probe`].
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+/// The version before, which knew depth alone: thresholds of 32 bits, no planes.
+const DEPTH_ALONE: u32 = 1;
 const NODE_BYTES: usize = 16;
 const LEAF_BYTES: usize = CLASSES + VOTED * 8;
 const DIGEST_BYTES: usize = 32;
@@ -28,7 +31,9 @@ pub enum FileError {
     #[error("not a forest of valet: make one with `valet train`")]
     Magic,
     /// Another version.
-    #[error("a forest of version {found}, but this valet reads version {VERSION}: train it again with this valet")]
+    #[error(
+        "a forest of version {found}, but this valet reads versions {DEPTH_ALONE} and {VERSION}: train it again with this valet"
+    )]
     Version {
         /// The version in the file.
         found: u32,
@@ -76,6 +81,9 @@ struct Header {
     focal_pixels: f64,
     classes: usize,
     joints: usize,
+    /// What the planes after depth show; version 1 had none.
+    #[serde(default)]
+    maps: Vec<String>,
     /// Nodes and leaves of each tree.
     trees: Vec<(usize, usize)>,
 }
@@ -104,6 +112,7 @@ impl Forest {
             focal_pixels: self.focal,
             classes: CLASSES,
             joints: VOTED,
+            maps: MAPS.map(String::from).to_vec(),
             trees: self.trees.iter().map(|tree| (tree.nodes.len(), tree.leaves.len())).collect(),
         };
         let header = serde_json::to_vec(&header).map_err(|error| FileError::Header(error.to_string()))?;
@@ -130,13 +139,13 @@ impl Forest {
             return Err(FileError::Magic);
         }
         let found = reader.word()?;
-        if found != VERSION {
+        if found != VERSION && found != DEPTH_ALONE {
             return Err(FileError::Version { found });
         }
         let length = reader.word()? as usize;
         let header: Header =
             serde_json::from_slice(reader.take(length)?).map_err(|error| FileError::Header(error.to_string()))?;
-        header.check()?;
+        header.check(found)?;
         let body: usize = header.trees.iter().map(|(nodes, leaves)| nodes * NODE_BYTES + leaves * LEAF_BYTES).sum();
         if reader.at + body + DIGEST_BYTES != bytes.len() {
             return Err(FileError::Length { at: bytes.len() });
@@ -147,20 +156,23 @@ impl Forest {
         }
         let mut trees = Vec::with_capacity(header.trees.len());
         for (index, (nodes, leaves)) in header.trees.iter().enumerate() {
-            trees.push(read_tree(&mut reader, index, *nodes, *leaves)?);
+            trees.push(read_tree(&mut reader, (found, index), *nodes, *leaves)?);
         }
         Ok(Self { focal: header.focal_pixels, description: header.description, trees })
     }
 }
 
 impl Header {
-    fn check(&self) -> Result<(), FileError> {
+    fn check(&self, version: u32) -> Result<(), FileError> {
         let same = |what, found: String, used: String| {
             if found == used { Ok(()) } else { Err(FileError::Convention { what, found, used }) }
         };
         same("a background of millimetres", self.background_millimetres.to_string(), BACKGROUND.to_string())?;
         same("mirrored images", self.mirrored.to_string(), false.to_string())?;
         same("classes", self.classes.to_string(), CLASSES.to_string())?;
+        if version == VERSION {
+            same("maps of the neck", self.maps.join(", "), MAPS.join(", "))?;
+        }
         same("joints", self.joints.to_string(), VOTED.to_string())?;
         if !(50.0..5000.0).contains(&self.focal_pixels) {
             return Err(FileError::Header(format!("focal length {} pixels", self.focal_pixels)));
@@ -176,6 +188,7 @@ impl Header {
 fn write_node(node: &Node, bytes: &mut Vec<u8>) {
     node.offsets.iter().for_each(|offset| bytes.extend(offset.to_le_bytes()));
     bytes.extend(node.threshold.to_le_bytes());
+    bytes.extend(node.planes);
     bytes.extend(node.next.to_le_bytes());
 }
 
@@ -187,14 +200,25 @@ fn write_leaf(leaf: &Leaf, bytes: &mut Vec<u8>) {
     }
 }
 
-fn read_tree(reader: &mut Reader<'_>, tree: usize, nodes: usize, leaves: usize) -> Result<Tree, FileError> {
+fn read_tree(
+    reader: &mut Reader<'_>,
+    (version, tree): (u32, usize),
+    nodes: usize,
+    leaves: usize,
+) -> Result<Tree, FileError> {
     let mut next_child = 1_usize;
     let mut next_leaf = 0_u32;
     let mut read = Tree { nodes: Vec::with_capacity(nodes), leaves: Vec::with_capacity(leaves) };
     for node in 0..nodes {
         let offsets = [reader.short()?, reader.short()?, reader.short()?, reader.short()?];
-        let [low, high] = [reader.short()?, reader.short()?].map(i16::to_le_bytes);
-        let threshold = i32::from_le_bytes([low[0], low[1], high[0], high[1]]);
+        let threshold = reader.short()?;
+        let mut planes: [u8; 2] = reader.array()?;
+        if version == DEPTH_ALONE {
+            // The upper half of the threshold, which is its sign: responses are differences of at most 10,000.
+            let sign = if threshold < 0 { u8::MAX } else { 0 };
+            planes.iter_mut().for_each(|plane| *plane ^= sign);
+        }
+        let known = planes.iter().all(|plane| usize::from(*plane) < if version == VERSION { PLANES } else { 1 });
         let next = reader.word()?;
         // Children and leaves are numbered in the order in which they are met: each has one parent, which comes before it.
         let sound = if next & LEAF == 0 {
@@ -204,10 +228,10 @@ fn read_tree(reader: &mut Reader<'_>, tree: usize, nodes: usize, leaves: usize) 
             next_leaf += 1;
             next & !LEAF == next_leaf - 1
         };
-        if !sound {
+        if !sound || !known {
             return Err(FileError::Structure { tree, node });
         }
-        read.nodes.push(Node { offsets, threshold, next });
+        read.nodes.push(Node { offsets, threshold, planes, next });
     }
     if next_child != nodes || next_leaf as usize != leaves {
         return Err(FileError::Structure { tree, node: nodes });

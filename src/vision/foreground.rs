@@ -170,6 +170,7 @@ impl View<'_> {
         }
         rules.remove_head(probe, pixels);
         list(probe, pixels);
+        probe.measure_from_neck(pixels, &rules.camera, &rules.neck);
         Ok(())
     }
 }

@@ -4,19 +4,47 @@
 //! and coordinates are clamped to that border. This constant is part of every trained tree: with another one a tree that
 //! labels 97 of 100 pixels rightly falls to 3 to 75.
 
+use super::neck::{CELL_SHIFT, MAPS};
+
 /// What background reads, in millimetres.
 pub const BACKGROUND: u16 = 10_000;
+/// Planes that a probe can read: depth, each map of the neck, and none.
+pub const PLANES: usize = MAPS.len() + 2;
+/// The plane of depth, which equation 3.1 reads.
+pub const DEPTH: u8 = 0;
+/// The plane that reads background everywhere: a feature with it is the other probe's value alone.
+pub const NOTHING: u8 = 7;
 
-/// A foreground image with a border of background.
+/// A foreground image with a border of background, and the maps of where it lies from the neck.
 #[derive(Clone, Debug, Default)]
 pub struct ProbeImage {
     width: usize,
     height: usize,
+    /// Depth row by row with its border and one value more, then each map, then one value more.
     values: Vec<u16>,
+    pub(super) room: super::neck::Room,
 }
 
 /// Two probes about a pixel: columns and rows of u and v in pixel metres.
 pub type Offsets = [f32; 4];
+
+/// Two probes with the planes that they read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Feature {
+    /// Where they look.
+    pub offsets: Offsets,
+    /// What they read there, below [`PLANES`].
+    pub planes: [u8; 2],
+}
+
+/// Where a plane's values stand: `(row >> shift) * stride + (column >> shift) + first`, rows and columns counted with the
+/// border.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Plane {
+    pub(super) shift: u32,
+    pub(super) stride: usize,
+    pub(super) first: usize,
+}
 
 impl ProbeImage {
     /// An image of background.
@@ -31,8 +59,44 @@ impl ProbeImage {
     pub fn reset(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
         self.values.clear();
-        // One more value than pixels: vector instructions read two at a time.
-        self.values.resize((width + 2) * (height + 2) + 1, BACKGROUND);
+        self.values.resize(self.value_count(), BACKGROUND);
+    }
+
+    /// All values: one more than pixels, since vector instructions read two at a time, and as many for the maps.
+    pub(super) const fn value_count(&self) -> usize {
+        let (columns, rows) = self.cells();
+        self.first_map() + MAPS.len() * columns * rows + 1
+    }
+
+    const fn first_map(&self) -> usize {
+        (self.width + 2) * (self.height + 2) + 1
+    }
+
+    /// Columns and rows of a map's cells.
+    pub(super) const fn cells(&self) -> (usize, usize) {
+        (((self.width + 1) >> CELL_SHIFT) + 1, ((self.height + 1) >> CELL_SHIFT) + 1)
+    }
+
+    /// Where each plane's values stand.
+    #[must_use]
+    pub(super) const fn plane(&self, plane: u8) -> Plane {
+        let (columns, rows) = self.cells();
+        match plane {
+            DEPTH => Plane { shift: 0, stride: self.stride(), first: 0 },
+            // Every place becomes the border's corner.
+            NOTHING.. => Plane { shift: 31, stride: 0, first: 0 },
+            map => {
+                let first = self.first_map() + (map as usize - 1) * columns * rows;
+                Plane { shift: CELL_SHIFT, stride: columns, first }
+            }
+        }
+    }
+
+    /// A map's values, cell by cell.
+    pub(super) fn map_mut(&mut self, map: usize) -> &mut [u16] {
+        let (columns, rows) = self.cells();
+        let first = self.first_map() + map * columns * rows;
+        self.values.get_mut(first..first + columns * rows).unwrap_or(&mut [])
     }
 
     /// Width without the border.
@@ -53,7 +117,7 @@ impl ProbeImage {
         self.width + 2
     }
 
-    /// All values with the border, and one more.
+    /// Depth with the border and one value more, then the maps.
     #[must_use]
     pub fn values(&self) -> &[u16] {
         &self.values
@@ -84,41 +148,70 @@ impl ProbeImage {
         (value < BACKGROUND).then_some(value)
     }
 
-    /// The part of the image from one corner to another (excluded). Probes outside it read background, as they do here
-    /// where all foreground lies inside.
+    /// The part of the image from one corner to another (excluded), grown to whole cells with one cell of background about
+    /// it, and its corner. Probes outside it read background, as they do here where all foreground lies inside.
     #[must_use]
-    pub fn cropped(&self, from: (usize, usize), to: (usize, usize)) -> Self {
-        let width = to.0.saturating_sub(from.0);
-        let mut cropped = Self::new(width, to.1.saturating_sub(from.1));
-        let (stride, inner) = (self.stride(), cropped.stride());
-        for (row, target) in (from.1..to.1).zip(cropped.values.chunks_mut(inner).skip(1)) {
-            let start = (row + 1) * stride + from.0 + 1;
-            if let (Some(target), Some(source)) = (target.get_mut(1..=width), self.values.get(start..start + width)) {
-                target.copy_from_slice(source);
+    pub fn cropped(&self, from: (usize, usize), to: (usize, usize)) -> (Self, (usize, usize)) {
+        let cell = 1_usize << CELL_SHIFT;
+        let lower = |at: usize| (at / cell).saturating_sub(1) * cell;
+        let (left, top) = (lower(from.0), lower(from.1));
+        let (right, bottom) = ((to.0 + 2 * cell).min(self.width), (to.1 + 2 * cell).min(self.height));
+        let mut cropped = Self::new(right.saturating_sub(left), bottom.saturating_sub(top));
+        cropped.copy(0, &self.values, (self.plane(DEPTH), (left, top)), cropped.plane(DEPTH), cropped.height + 2);
+        for map in 1..=MAPS.len() {
+            #[expect(clippy::cast_possible_truncation, reason = "a handful of maps")]
+            let (source, target) = (self.plane(map as u8), cropped.plane(map as u8));
+            let corner = (left >> CELL_SHIFT, top >> CELL_SHIFT);
+            cropped.copy(target.first, &self.values, (source, corner), target, cropped.cells().1);
+        }
+        (cropped, (left, top))
+    }
+
+    /// Copies a plane's rows from a corner of another image's plane on.
+    fn copy(
+        &mut self,
+        first: usize,
+        from: &[u16],
+        (source, corner): (Plane, (usize, usize)),
+        plane: Plane,
+        rows: usize,
+    ) {
+        for row in 0..rows {
+            let start = source.first + (row + corner.1) * source.stride + corner.0;
+            let target = first + row * plane.stride;
+            let copied = from.get(start..start + plane.stride);
+            if let (Some(target), Some(copied)) = (self.values.get_mut(target..target + plane.stride), copied) {
+                target.copy_from_slice(copied);
             }
         }
-        cropped
     }
 
     /// The value at a place; background outside.
     #[must_use]
     #[inline]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the image and its border")]
     pub fn at(&self, column: f32, row: f32) -> u16 {
-        // Shifted by the border first: what is not negative is cut to a whole number by the cast alone, and cheaply.
-        let column = (column + 1.0).clamp(0.0, (self.width + 1) as f32);
-        let row = (row + 1.0).clamp(0.0, (self.height + 1) as f32);
-        self.values.get(row as usize * self.stride() + column as usize).copied().unwrap_or(BACKGROUND)
+        self.read(self.plane(DEPTH), column, row)
     }
 
-    /// The feature: depth at n + u/z less depth at n + v/z, in millimetres. `per_metre` is 1/z, with a correction of the
-    /// focal length where the camera is not the one that the offsets were made for.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the image and its border")]
+    fn read(&self, plane: Plane, column: f32, row: f32) -> u16 {
+        // Shifted by the border first: what is not negative is cut to a whole number by the cast alone, and cheaply.
+        let column = (column + 1.0).clamp(0.0, (self.width + 1) as f32) as usize >> plane.shift;
+        let row = (row + 1.0).clamp(0.0, (self.height + 1) as f32) as usize >> plane.shift;
+        self.values.get(row * plane.stride + column + plane.first).copied().unwrap_or(BACKGROUND)
+    }
+
+    /// The feature: what the first plane reads at n + u/z less what the second one reads at n + v/z, in millimetres; with
+    /// both planes depth, equation 3.1. `per_metre` is 1/z, with a correction of the focal length where the camera is not the
+    /// one that the offsets were made for.
     #[must_use]
     #[inline]
-    pub fn response(&self, (column, row): (f32, f32), per_metre: f32, offsets: &Offsets) -> i32 {
-        let [u_x, u_y, v_x, v_y] = *offsets;
-        let first = self.at(column + u_x * per_metre + 0.5, row + u_y * per_metre + 0.5);
-        let second = self.at(column + v_x * per_metre + 0.5, row + v_y * per_metre + 0.5);
+    pub fn response(&self, (column, row): (f32, f32), per_metre: f32, feature: &Feature) -> i32 {
+        let [u_x, u_y, v_x, v_y] = feature.offsets;
+        let [first, second] = feature.planes.map(|plane| self.plane(plane));
+        let first = self.read(first, column + u_x * per_metre + 0.5, row + u_y * per_metre + 0.5);
+        let second = self.read(second, column + v_x * per_metre + 0.5, row + v_y * per_metre + 0.5);
         i32::from(first) - i32::from(second)
     }
 }
@@ -197,7 +290,8 @@ mod tests {
         for feature in &golden.features {
             let own = f32::from(image.at(feature.x, feature.y)) / 1000.0;
             let offsets = [feature.u[0], feature.u[1], feature.v[0], feature.v[1]];
-            assert_eq!(image.response((feature.x, feature.y), 1.0 / own, &offsets), feature.f);
+            let of_depth = super::Feature { offsets, planes: [DEPTH; 2] };
+            assert_eq!(image.response((feature.x, feature.y), 1.0 / own, &of_depth), feature.f);
         }
     }
 

@@ -35,13 +35,15 @@ pub struct Settings {
     pub smallest: usize,
     /// Offsets reach this far to each side, in metres.
     pub reach_metres: f64,
+    /// Share of a node's features that look at the maps of the neck, from 0 (the thesis' equation 3.1 alone) to 1.
+    pub neck_share: f64,
     /// Everything random comes from it.
     pub seed: u64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { features: 500, thresholds: 10, depth: 20, smallest: 2, reach_metres: 0.45, seed: 1 }
+        Self { features: 500, thresholds: 10, depth: 20, smallest: 2, reach_metres: 0.45, neck_share: 0.0, seed: 1 }
     }
 }
 
@@ -78,6 +80,7 @@ impl Settings {
             ("depth", self.depth as f64, 1.0, 30.0),
             ("smallest", self.smallest as f64, 2.0, 1e9),
             ("reach_metres", self.reach_metres, 0.01, 0.55),
+            ("neck_share", self.neck_share, 0.0, 1.0),
         ] {
             if !(lowest..=highest).contains(&value) {
                 return Err(TrainingError::Setting { name, value, lowest, highest });
@@ -160,8 +163,9 @@ impl Grower<'_> {
 
     /// Brings the left samples to the front, keeping the order on both sides, and counts them.
     fn partition(&self, samples: &mut [Sample], split: &Split) -> usize {
+        let (feature, threshold) = (split.probes.feature(), i32::from(split.threshold));
         let (left, right): (Vec<Sample>, Vec<Sample>) =
-            samples.iter().partition(|sample| self.set.response(sample, &split.offsets()) < split.threshold);
+            samples.iter().partition(|sample| self.set.response(sample, &feature) < threshold);
         let count = left.len();
         samples.iter_mut().zip(left.into_iter().chain(right)).for_each(|(slot, sample)| *slot = sample);
         count
@@ -235,8 +239,9 @@ fn flatten(root: &Grown, cut: bool) -> Tree {
                 Grown::Split(_, Some(leaf), _) if cut => end(&mut tree, leaf),
                 Grown::Split(split, _, children) => {
                     tree.nodes.push(Node {
-                        offsets: split.offsets,
+                        offsets: split.probes.offsets,
                         threshold: split.threshold,
+                        planes: split.probes.planes,
                         next: first_of_next + below.len() as u32,
                     });
                     below.push(&children.0);

@@ -1,7 +1,7 @@
 //! Decision trees over depth features and what their leaves know: the parts' shares, and where each joint lies from here.
 
 use super::part::{CLASSES, PARTS};
-use super::probe::{Offsets, ProbeImage};
+use super::probe::{Feature, ProbeImage};
 use crate::body::{Joint, Side};
 
 /// Joints that a leaf votes for: six on each side, left first, in the order of [`Joint::ALL`].
@@ -20,17 +20,19 @@ pub struct Node {
     /// u and v (column, row each) in units of [`OFFSET_UNIT`] at the model's focal length.
     pub offsets: [i16; 4],
     /// Left where the feature is below this, in millimetres.
-    pub threshold: i32,
+    pub threshold: i16,
+    /// What u and v read, below [`PLANES`](super::probe::PLANES).
+    pub planes: [u8; 2],
     /// The left child (the right one follows it), or [`LEAF`] and the leaf's number.
     pub next: u32,
 }
 
 impl Node {
-    /// The offsets in pixel metres.
+    /// The feature, with offsets in pixel metres.
     #[must_use]
     #[inline]
-    pub fn offsets(&self) -> Offsets {
-        self.offsets.map(|offset| f32::from(offset) * OFFSET_UNIT)
+    pub fn feature(&self) -> Feature {
+        Feature { offsets: self.offsets.map(|offset| f32::from(offset) * OFFSET_UNIT), planes: self.planes }
     }
 }
 
@@ -92,7 +94,7 @@ impl Tree {
             if node.next & LEAF != 0 {
                 return node.next & !LEAF;
             }
-            let right = image.response(place, per_metre, &node.offsets()) >= node.threshold;
+            let right = image.response(place, per_metre, &node.feature()) >= i32::from(node.threshold);
             next = node.next + u32::from(right);
         }
         next & !LEAF
@@ -160,7 +162,7 @@ mod tests {
     fn stump() -> Tree {
         Tree {
             nodes: vec![
-                Node { offsets: [3000, 0, 0, 0], threshold: 500, next: 1 },
+                Node { offsets: [3000, 0, 0, 0], threshold: 500, next: 1, ..Node::default() },
                 Node { next: LEAF, ..Node::default() },
                 Node { next: LEAF | 1, ..Node::default() },
             ],

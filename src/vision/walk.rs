@@ -54,7 +54,8 @@ pub fn plain_leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f3
                 };
                 walking += 1;
                 let place = (f32::from(pixel.column), f32::from(pixel.row));
-                let right = image.response(place, per_metre(*pixel, ratio), &node.offsets()) >= node.threshold;
+                let right =
+                    image.response(place, per_metre(*pixel, ratio), &node.feature()) >= i32::from(node.threshold);
                 *next = node.next + u32::from(right);
             }
         }

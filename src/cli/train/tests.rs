@@ -11,6 +11,7 @@ fn arguments(out: &Path) -> Arguments {
         trees: Some(2),
         depth: 6,
         pixels: 20,
+        neck_share: 0.5,
         features: 20,
         thresholds: 5,
         seed: 3,

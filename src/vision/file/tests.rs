@@ -11,7 +11,7 @@ fn leaf(first: u8) -> Leaf {
 }
 
 fn forest() -> Forest {
-    let split = |next| Node { offsets: [-100, 200, -300, 24_000], threshold: -77, next };
+    let split = |next| Node { offsets: [-100, 200, -300, 24_000], threshold: -77, planes: [2, 7], next };
     let end = |leaf| Node { next: LEAF | leaf, ..Node::default() };
     let nodes = vec![split(1), end(0), split(3), end(1), end(2)];
     let tree = Tree { nodes, leaves: vec![leaf(1), leaf(2), leaf(3)] };

@@ -1,7 +1,8 @@
 //! The best of a node's random splits.
 
+use super::super::neck::MAPS;
 use super::super::part::CLASSES;
-use super::super::probe::Offsets;
+use super::super::probe::{DEPTH, Feature, NOTHING};
 use super::super::tree::OFFSET_UNIT;
 use super::super::walk::{Work, with_vector_instructions};
 use super::batch::{BLOCK, Features, Room};
@@ -14,6 +15,8 @@ use rayon::prelude::*;
 
 /// Share of candidates whose second probe is the pixel itself.
 const SINGLE_PROBE: f64 = 0.3;
+/// Share of a map's single probes that look at the pixel itself.
+const OWN_PLACE: f64 = 0.5;
 /// Buckets between thresholds: one more than thresholds at most.
 const BUCKETS: usize = 16;
 /// A node of more samples is counted by several threads.
@@ -24,19 +27,26 @@ const LEAST_GAIN: f64 = 1e-6;
 /// A node's split, as it will be stored.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Split {
-    pub(super) offsets: [i16; 4],
-    pub(super) threshold: i32,
+    pub(super) probes: Probes,
+    pub(super) threshold: i16,
 }
 
-impl Split {
-    pub(super) fn offsets(&self) -> Offsets {
-        self.offsets.map(|offset| f32::from(offset) * OFFSET_UNIT)
+/// A feature as it will be stored.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probes {
+    pub(super) offsets: [i16; 4],
+    pub(super) planes: [u8; 2],
+}
+
+impl Probes {
+    pub(super) fn feature(&self) -> Feature {
+        Feature { offsets: self.offsets.map(|offset| f32::from(offset) * OFFSET_UNIT), planes: self.planes }
     }
 }
 
 /// A node's candidates: features, and each one's sorted thresholds.
 struct Candidates {
-    stored: Vec<[i16; 4]>,
+    stored: Vec<Probes>,
     features: Features,
     /// For each block of features: the lowest threshold of each, the second one of each, and so on.
     thresholds: Vec<Vec<[i16; BLOCK]>>,
@@ -69,7 +79,7 @@ pub(super) fn best_split(set: &TrainingSet, settings: &Settings, samples: &[Samp
         let found = best_threshold(&histogram, candidates.padded(), index, &present.counts, settings.thresholds);
         let Some((found, place)) = found else { continue };
         if best.as_ref().is_none_or(|(most, _)| found > *most) {
-            best = Some((found, Split { offsets: *stored, threshold: candidates.threshold(index, place) }));
+            best = Some((found, Split { probes: *stored, threshold: candidates.threshold(index, place) }));
         }
     }
     best.filter(|(most, _)| *most > LEAST_GAIN).map(|(_, split)| split)
@@ -80,12 +90,11 @@ impl Candidates {
     fn draw(set: &TrainingSet, settings: &Settings, samples: &[Sample], seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(mix(seed, 3));
         let reach = reach(settings.reach_metres * set.focal());
-        let stored: Vec<[i16; 4]> = (0..settings.features).map(|_| draw_offsets(&mut random, reach)).collect();
-        let offsets: Vec<Offsets> =
-            stored.iter().map(|stored| stored.map(|offset| f32::from(offset) * OFFSET_UNIT)).collect();
-        let features = Features::new(offsets.iter());
+        let stored = draw_probes(settings, &mut random, reach);
+        let drawn: Vec<Feature> = stored.iter().map(Probes::feature).collect();
+        let features = Features::new(&drawn);
         let mut room = Room::default();
-        let mut thresholds = vec![Vec::new(); offsets.len().div_ceil(BLOCK)];
+        let mut thresholds = vec![Vec::new(); drawn.len().div_ceil(BLOCK)];
         for _ in 0..settings.thresholds {
             let drawn = samples.get(random.random_range(0..samples.len())).and_then(|sample| set.view(sample));
             let Some((image, place, per_metre)) = drawn else { continue };
@@ -102,9 +111,9 @@ impl Candidates {
         self.thresholds.len() * BLOCK
     }
 
-    fn threshold(&self, index: usize, place: usize) -> i32 {
+    fn threshold(&self, index: usize, place: usize) -> i16 {
         let row = self.thresholds.get(index / BLOCK).and_then(|rows| rows.get(place));
-        row.and_then(|row| row.get(index % BLOCK)).copied().map_or(0, i32::from)
+        row.and_then(|row| row.get(index % BLOCK)).copied().unwrap_or(0)
     }
 }
 
@@ -166,6 +175,31 @@ impl Present {
         }
         present
     }
+}
+
+/// Features of depth first, then of each map in turn: those that read the same stand side by side.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a share of a count, and a handful of maps"
+)]
+fn draw_probes(settings: &Settings, random: &mut ChaCha8Rng, reach: i16) -> Vec<Probes> {
+    let of_maps = (settings.features as f64 * settings.neck_share) as usize;
+    let mut drawn: Vec<Probes> = (of_maps..settings.features)
+        .map(|_| Probes { offsets: draw_offsets(random, reach), planes: [DEPTH; 2] })
+        .collect();
+    for number in 0..of_maps {
+        let kind = number * 2 * MAPS.len() / of_maps;
+        let map = (kind / 2 + 1) as u8;
+        let [u_x, u_y, v_x, v_y] = draw_offsets(random, reach);
+        drawn.push(if kind % 2 == 0 {
+            let offsets = if random.random_bool(OWN_PLACE) { [0; 4] } else { [u_x, u_y, 0, 0] };
+            Probes { offsets, planes: [map, NOTHING] }
+        } else {
+            Probes { offsets: [u_x, u_y, v_x, v_y], planes: [map; 2] }
+        });
+    }
+    drawn
 }
 
 fn draw_offsets(random: &mut ChaCha8Rng, reach: i16) -> [i16; 4] {

@@ -2,7 +2,7 @@
 
 use super::super::camera::Intrinsics;
 use super::super::part::CLASSES;
-use super::super::probe::{Offsets, ProbeImage};
+use super::super::probe::{Feature, ProbeImage};
 use super::super::tree::VOTED;
 use super::mix;
 use crate::geometry::{Point, Vector};
@@ -99,11 +99,10 @@ impl TrainingSet {
             return;
         }
         let mut random = ChaCha8Rng::seed_from_u64(mix(seed, self.images.len() as u64));
+        let (image, corner) = example.image.cropped((window.0, window.1), (window.2 + 1, window.3 + 1));
         for (label, pixels) in (0_u8..).zip(&pixels) {
-            self.draw(example, label, pixels, (window.0, window.1), &mut random);
+            self.draw(example, label, pixels, corner, &mut random);
         }
-        let image = example.image.cropped((window.0, window.1), (window.2 + 1, window.3 + 1));
-        let corner = (window.0, window.1);
         self.images.push(Cropped { image, corner, camera: example.camera, joints: example.joints });
     }
 
@@ -134,10 +133,10 @@ impl TrainingSet {
 
     /// A sample's response to a feature.
     #[inline]
-    pub(super) fn response(&self, sample: &Sample, offsets: &Offsets) -> i32 {
+    pub(super) fn response(&self, sample: &Sample, feature: &Feature) -> i32 {
         self.images
             .get(sample.image as usize)
-            .map_or(0, |image| image.image.response(sample.place(), sample.per_metre(image, self.focal), offsets))
+            .map_or(0, |image| image.image.response(sample.place(), sample.per_metre(image, self.focal), feature))
     }
 
     /// What [`TrainingSet::response`] needs of a sample, once for many features: image, place, 1/z.

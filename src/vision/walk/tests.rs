@@ -1,4 +1,6 @@
 use super::*;
+use crate::geometry::Point;
+use crate::vision::camera::Intrinsics;
 use crate::vision::part::CLASSES;
 use crate::vision::tree::{Leaf, NO_VOTE, Node, VOTED, Vote};
 use rand::{RngExt, SeedableRng};
@@ -13,7 +15,8 @@ fn tree(random: &mut ChaCha8Rng) -> Tree {
         let split = tree.nodes.len() < 2_000 && (at < 400 || random.random_bool(0.6));
         tree.nodes[at] = if split {
             let offsets = [0; 4].map(|_| random.random_range(-2_000..=2_000));
-            Node { offsets, threshold: random.random_range(-1_500..1_500), next: children }
+            let planes = if random.random_bool(0.5) { [0; 2] } else { [0; 2].map(|_| random.random_range(0..8)) };
+            Node { offsets, threshold: random.random_range(-1_500..1_500), planes, next: children }
         } else {
             let leaf = Leaf { shares: [0; CLASSES], votes: [Vote { offset: [0; 3], deviation: NO_VOTE }; VOTED] };
             tree.leaves.push(leaf);
@@ -39,6 +42,8 @@ fn scene(random: &mut ChaCha8Rng, width: u16, height: u16) -> (ProbeImage, Vec<P
             }
         }
     }
+    let camera = Intrinsics { fx: 60.0, fy: 60.0, cx: 30.0, cy: 20.0 };
+    image.measure_from_neck(&pixels, &camera, &Point::new(0.0, 0.0, 1.0));
     (image, pixels)
 }
 

@@ -6,13 +6,14 @@
 
 use super::{Work, per_metre};
 use crate::vision::foreground::Pixel;
-use crate::vision::probe::ProbeImage;
+use crate::vision::probe::{PLANES, Plane, ProbeImage};
 use crate::vision::tree::{LEAF, Node, OFFSET_UNIT, Tree};
 use std::arch::x86_64::{
     __m256, __m256i, _mm256_add_epi32, _mm256_add_ps, _mm256_and_si256, _mm256_blendv_epi8, _mm256_castsi256_ps,
     _mm256_cmpgt_epi32, _mm256_cvtepi32_ps, _mm256_cvttps_epi32, _mm256_i32gather_epi32, _mm256_loadu_ps,
-    _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi32,
-    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps, _mm256_setzero_si256, _mm256_slli_epi32, _mm256_srai_epi32,
+    _mm256_loadu_si256, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
+    _mm256_mullo_epi32, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps,
+    _mm256_setzero_si256, _mm256_slli_epi32, _mm256_srai_epi32, _mm256_srli_epi32, _mm256_srlv_epi32,
     _mm256_storeu_si256, _mm256_sub_epi32,
 };
 
@@ -21,13 +22,14 @@ const LANES: usize = 8;
 const VECTORS: usize = 2;
 /// Pixels of one go.
 const GROUP: usize = LANES * VECTORS;
+const _: () = assert!(PLANES == LANES);
 
 /// Adds the leaves of as many pixels as make whole groups; tells how many that were. None without AVX2.
 pub(super) fn leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f32, into: &mut Vec<u32>) -> usize {
     // Indices are signed 32-bit numbers of words.
     let fits = i32::try_from(tree.nodes.len() * 4).is_ok() && i32::try_from(image.values().len()).is_ok();
-    // The whole image with its border and one value more: what the clamped coordinates reach.
-    let whole = image.values().len() == image.stride() * (image.height() + 2) + 1;
+    // All planes and one value more: what the clamped coordinates reach.
+    let whole = image.values().len() == image.value_count();
     if tree.nodes.is_empty() || !fits || !whole || !std::arch::is_x86_feature_detected!("avx2") {
         return 0;
     }
@@ -72,21 +74,32 @@ struct Ground {
     values: *const i32,
     last_column: __m256,
     last_row: __m256,
-    stride: __m256i,
+    /// For each plane, how its values stand ([`Plane`](crate::vision::probe::Plane)).
+    shifts: __m256i,
+    strides: __m256i,
+    firsts: __m256i,
 }
 
 /// # Safety
-/// The machine must have AVX2; `nodes` must not be empty; `image` must hold `stride * (height + 2) + 1` values.
+/// The machine must have AVX2; `nodes` must not be empty; `image` must hold `value_count()` values.
 #[target_feature(enable = "avx2")]
 #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "sizes are checked by the caller")]
 unsafe fn walk(nodes: &[Node], image: &ProbeImage, group: &[Pixel; GROUP], ratio: f32) -> [u32; GROUP] {
+    let table = |of: &dyn Fn(Plane) -> i32| {
+        let mut lanes = [0_i32; LANES];
+        lanes.iter_mut().zip(0_u8..).for_each(|(lane, plane)| *lane = of(image.plane(plane)));
+        // SAFETY: `lanes` is eight words, which need no alignment.
+        unsafe { _mm256_loadu_si256(lanes.as_ptr().cast()) }
+    };
     let ground = Ground {
         nodes: nodes.as_ptr().cast(),
         last_node: _mm256_set1_epi32((nodes.len() - 1) as i32),
         values: image.values().as_ptr().cast(),
         last_column: _mm256_set1_ps((image.width() + 1) as f32),
         last_row: _mm256_set1_ps((image.height() + 1) as f32),
-        stride: _mm256_set1_epi32(image.stride() as i32),
+        shifts: table(&|plane| plane.shift as i32),
+        strides: table(&|plane| plane.stride as i32),
+        firsts: table(&|plane| plane.first as i32),
     };
     let (vectors, _) = group.as_chunks::<LANES>();
     let mut walkers = [start(&[Pixel::default(); LANES], ratio); VECTORS];
@@ -143,7 +156,7 @@ unsafe fn step(walkers: &mut Walkers, ground: &Ground) -> bool {
     let one = _mm256_set1_epi32(1);
     let (second, third) = (_mm256_add_epi32(word, one), _mm256_add_epi32(word, _mm256_set1_epi32(2)));
     // SAFETY: a node is four words (checked beside its definition), and `word` is the first one of a node.
-    let (u, v, threshold, next) = unsafe {
+    let (u, v, test, next) = unsafe {
         (
             _mm256_i32gather_epi32::<4>(ground.nodes, word),
             _mm256_i32gather_epi32::<4>(ground.nodes, second),
@@ -152,7 +165,11 @@ unsafe fn step(walkers: &mut Walkers, ground: &Ground) -> bool {
         )
     };
     // SAFETY: as for this function.
-    let response = unsafe { _mm256_sub_epi32(probe(walkers, ground, u), probe(walkers, ground, v)) };
+    let response = unsafe {
+        let first = probe(walkers, ground, u, _mm256_srli_epi32::<16>(test));
+        _mm256_sub_epi32(first, probe(walkers, ground, v, _mm256_srli_epi32::<24>(test)))
+    };
+    let threshold = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(test));
     // Minus one where the feature is below the threshold: the way goes left.
     let left = _mm256_cmpgt_epi32(threshold, response);
     let ended = _mm256_srai_epi32::<31>(next);
@@ -162,13 +179,13 @@ unsafe fn step(walkers: &mut Walkers, ground: &Ground) -> bool {
     _mm256_movemask_ps(_mm256_castsi256_ps(ended)) == 0xFF
 }
 
-/// The depths at offsets that stand in the halves of a word: column low, row high.
+/// What planes (the lowest three bits of a word) read at offsets that stand in the halves of a word: column low, row high.
 ///
 /// # Safety
 /// As [`walk`].
 #[target_feature(enable = "avx2")]
 #[inline]
-unsafe fn probe(walkers: &Walkers, ground: &Ground, offsets: __m256i) -> __m256i {
+unsafe fn probe(walkers: &Walkers, ground: &Ground, offsets: __m256i, plane: __m256i) -> __m256i {
     let along = |from: __m256, offset: __m256i, last: __m256| {
         let metres = _mm256_mul_ps(_mm256_cvtepi32_ps(offset), _mm256_set1_ps(OFFSET_UNIT));
         let at = _mm256_add_ps(from, _mm256_mul_ps(metres, walkers.per_metre));
@@ -179,8 +196,11 @@ unsafe fn probe(walkers: &Walkers, ground: &Ground, offsets: __m256i) -> __m256i
     let low = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(offsets));
     let column = along(walkers.column, low, ground.last_column);
     let row = along(walkers.row, _mm256_srai_epi32::<16>(offsets), ground.last_row);
-    let index = _mm256_add_epi32(_mm256_mullo_epi32(row, ground.stride), column);
-    // SAFETY: column and row lie inside the image with its border, and one more value follows the last.
+    let shift = _mm256_permutevar8x32_epi32(ground.shifts, plane);
+    let first = _mm256_add_epi32(_mm256_srlv_epi32(column, shift), _mm256_permutevar8x32_epi32(ground.firsts, plane));
+    let stride = _mm256_permutevar8x32_epi32(ground.strides, plane);
+    let index = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srlv_epi32(row, shift), stride), first);
+    // SAFETY: column and row lie inside the image with its border, so inside each plane; one more value follows the last.
     let two = unsafe { _mm256_i32gather_epi32::<2>(ground.values, index) };
     _mm256_and_si256(two, _mm256_set1_epi32(0xFFFF))
 }
