@@ -1,8 +1,7 @@
 //! The forest that valet brings along: trained on simulated people of many sizes, shapes, clothes and postures, so that a new
 //! person needs neither coloured clothes nor training.
 //!
-//! An earlier state of the training that `valet train --generic` runs made it, so that command makes a like forest, not the
-//! same bytes; `docs/results.md` says with which numbers it was made and how well it does.
+//! `docs/results.md` says with which commands its trees were trained, and how well it does.
 
 use super::file::FileError;
 use super::tree::Forest;
@@ -23,8 +22,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_whole_has_three_trees_and_is_not_too_large() {
-        assert_eq!(forest().unwrap().trees().len(), 3);
+    fn it_is_whole_and_not_too_large() {
+        assert!(forest().unwrap().trees().len() >= 2);
         assert!(BYTES.len() <= 20 << 20);
     }
 }

@@ -17,7 +17,7 @@ pub(super) const CELL_SHIFT: u32 = 2;
 pub(super) const MAPS: [&str; 6] = ["way", "rest", "root", "across", "down", "deep"];
 /// Added to what may be negative, in millimetres.
 const ZERO: f32 = 5000.0;
-/// Neighbouring cells whose depths differ by more are not the same surface, in millimetres.
+/// Neighbouring cells whose places differ by more along any axis are not the same surface, in millimetres.
 const STEP: f32 = 60.0;
 /// A way that jumps from one surface to another is longer by this, in millimetres: only what cannot be reached otherwise is
 /// reached so.
@@ -35,10 +35,9 @@ struct Cell {
     /// From the neck, in millimetres.
     place: [f32; 3],
     way: f32,
-    /// The longest way that leads through here.
+    /// The longest way to where the surface leads from here, ever further from the neck.
     end: f32,
     root: f32,
-    before: u32,
     done: bool,
 }
 
@@ -50,8 +49,7 @@ pub(super) struct Room {
     order: Vec<u32>,
 }
 
-const NO_CELL: u32 = u32::MAX;
-const EMPTY: Cell = Cell { place: [0.0; 3], way: f32::INFINITY, end: 0.0, root: 0.0, before: NO_CELL, done: false };
+const EMPTY: Cell = Cell { place: [0.0; 3], way: f32::INFINITY, end: 0.0, root: 0.0, done: false };
 
 impl ProbeImage {
     /// Fills the maps from the image's foreground pixels; `camera` and `neck` are the image's own.
@@ -60,7 +58,7 @@ impl ProbeImage {
         let (columns, rows) = self.cells();
         room.place(pixels, columns, rows, camera, neck);
         room.walk(columns);
-        room.end();
+        room.end(columns);
         for (map, of) in MAPPED.iter().enumerate() {
             for (value, cell) in self.map_mut(map).iter_mut().zip(&room.cells) {
                 *value = if cell.way.is_finite() { to_millimetres(of(cell)) } else { BACKGROUND };
@@ -120,41 +118,52 @@ impl Room {
             cell.done = true;
             let cell = *cell;
             self.order.push(index);
-            for row in [at.wrapping_sub(columns), at, at.wrapping_add(columns)] {
-                for next in [row.wrapping_sub(1), row, row.wrapping_add(1)] {
-                    self.reach(next, &cell, index);
-                }
+            for next in neighbours(at, columns) {
+                self.reach(next, &cell);
             }
         }
     }
 
     /// Takes the way over `from` to a cell where it is shorter.
-    fn reach(&mut self, next: usize, from: &Cell, index: u32) {
+    fn reach(&mut self, next: usize, from: &Cell) {
         let Some(cell) = self.cells.get_mut(next).filter(|cell| cell.way.is_finite() && !cell.done) else { return };
         let square: f32 = cell.place.iter().zip(from.place).map(|(to, from)| (to - from) * (to - from)).sum();
-        let jump = if (cell.place[2] - from.place[2]).abs() > STEP { JUMP } else { 0.0 };
-        let way = from.way + square.sqrt() + jump;
+        let way = from.way + square.sqrt() + if joined(cell, from) { 0.0 } else { JUMP };
         if way >= cell.way {
             return;
         }
         cell.way = way;
-        cell.before = index;
         cell.root = if way < ROOT { cell.place[0] } else { from.root };
         #[expect(clippy::cast_possible_truncation, reason = "counted in 32 bits from the start")]
         self.ahead.push(Reverse((u32::from(to_millimetres(way)), next as u32)));
     }
 
-    /// How far the ways through each cell go on, from their ends backwards.
-    fn end(&mut self) {
+    /// How far the surface leads on from each cell, from its ends backwards. Every cell across a limb knows it, not only those
+    /// that a shortest way runs through.
+    fn end(&mut self, columns: usize) {
         for index in self.order.iter().rev() {
-            let Some(cell) = self.cells.get_mut(*index as usize) else { continue };
-            cell.end = cell.end.max(cell.way);
-            let (end, before) = (cell.end, cell.before as usize);
-            if let Some(before) = self.cells.get_mut(before) {
-                before.end = before.end.max(end);
+            let at = *index as usize;
+            let Some(cell) = self.cells.get(at).copied() else { continue };
+            let further = neighbours(at, columns).filter_map(|next| self.cells.get(next));
+            let further = further.filter(|next| next.way.is_finite() && next.way > cell.way && joined(next, &cell));
+            let end = further.map(|next| next.end).fold(cell.way, f32::max);
+            if let Some(cell) = self.cells.get_mut(at) {
+                cell.end = end;
             }
         }
     }
+}
+
+/// The cells about a cell; at an edge also the other edge's of the row before or after, which are too far off to be joined.
+fn neighbours(at: usize, columns: usize) -> impl Iterator<Item = usize> {
+    [at.wrapping_sub(columns), at, at.wrapping_add(columns)]
+        .into_iter()
+        .flat_map(|row| [row.wrapping_sub(1), row, row.wrapping_add(1)])
+}
+
+/// Whether neighbouring cells are the same surface.
+fn joined(one: &Cell, other: &Cell) -> bool {
+    one.place.iter().zip(other.place).all(|(one, other)| (one - other).abs() <= STEP)
 }
 
 /// The cell of a pixel, counted as probes count: with the image's border.
@@ -164,3 +173,6 @@ fn cell_of(pixel: Pixel, columns: usize) -> usize {
 }
 
 const _: () = assert!(MAPS.len() + 1 == super::probe::NOTHING as usize);
+
+#[cfg(test)]
+mod tests;

@@ -51,6 +51,51 @@ fn another_version_or_another_kind_of_file_is_named() {
     assert_eq!(Forest::from_bytes(b"PNG and so on"), Err(FileError::Magic));
 }
 
+/// The same forest as the version before wrote it: thresholds of 32 bits, and no maps in the header.
+fn of_version_1() -> (Forest, Vec<u8>) {
+    let mut forest = forest();
+    for (threshold, node) in [-77, 300].into_iter().zip([0, 2]) {
+        for tree in &mut forest.trees {
+            (tree.nodes[node].threshold, tree.nodes[node].planes) = (threshold, [0; 2]);
+        }
+    }
+    let bytes = forest.to_bytes().unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let header = String::from_utf8(bytes[16..16 + length].to_vec()).unwrap();
+    let maps = format!("\"maps\":{},", serde_json::to_string(&MAPS).unwrap());
+    let header = header.replace(&maps, "");
+    let mut old = bytes[..8].to_vec();
+    old.extend(DEPTH_ALONE.to_le_bytes());
+    old.extend(u32::try_from(header.len()).unwrap().to_le_bytes());
+    old.extend(header.as_bytes());
+    let trees = old.len();
+    old.extend(&bytes[16 + length..]);
+    // The sign of a threshold fills its upper half, where planes stand now.
+    for tree in 0..2 {
+        let start = trees + tree * (5 * NODE_BYTES + 3 * LEAF_BYTES);
+        old[start + 10..start + 12].fill(u8::MAX);
+    }
+    (forest, sealed(old))
+}
+
+#[test]
+fn a_forest_of_the_version_before_is_read_as_one_of_depth_alone() {
+    let (forest, bytes) = of_version_1();
+    assert_eq!(Forest::from_bytes(&bytes), Ok(forest));
+}
+
+#[test]
+fn a_threshold_that_no_difference_of_depths_reaches_and_a_plane_that_is_none_are_refused() {
+    let (_, mut bytes) = of_version_1();
+    let second = bytes.len() - DIGEST_BYTES - (5 * NODE_BYTES + 3 * LEAF_BYTES);
+    bytes[second + 10] = 1;
+    assert_eq!(Forest::from_bytes(&sealed(bytes)), Err(FileError::Structure { tree: 1, node: 0 }));
+    let mut broken = forest();
+    broken.trees[0].nodes[2].planes = [0, 8];
+    let bytes = broken.to_bytes().unwrap();
+    assert_eq!(Forest::from_bytes(&bytes), Err(FileError::Structure { tree: 0, node: 2 }));
+}
+
 #[test]
 fn a_changed_byte_is_found_by_the_checksum() {
     let mut bytes = forest().to_bytes().unwrap();
@@ -80,9 +125,12 @@ fn other_conventions_are_refused_by_name() {
         changed[start..start + from.len()].copy_from_slice(to.as_bytes());
         Forest::from_bytes(&sealed(changed))
     };
-    for (from, to) in
-        [("metres\":10000", "metres\":32767"), ("ed\":false", "ed\":true "), ("classes\":9", "classes\":8")]
-    {
+    for (from, to) in [
+        ("metres\":10000", "metres\":32767"),
+        ("ed\":false", "ed\":true "),
+        ("classes\":9", "classes\":8"),
+        ("\"way\"", "\"off\""),
+    ] {
         assert!(matches!(text(from, to), Err(FileError::Convention { .. })), "{to}");
     }
     assert!(matches!(text("pixels\":545.0", "pixels\":-45.0"), Err(FileError::Header(_))));

@@ -192,7 +192,7 @@ fn draw_probes(settings: &Settings, random: &mut ChaCha8Rng, reach: i16) -> Vec<
         let kind = number * 2 * MAPS.len() / of_maps;
         let map = (kind / 2 + 1) as u8;
         let [u_x, u_y, v_x, v_y] = draw_offsets(random, reach);
-        drawn.push(if kind % 2 == 0 {
+        drawn.push(if kind.is_multiple_of(2) {
             let offsets = if random.random_bool(OWN_PLACE) { [0; 4] } else { [u_x, u_y, 0, 0] };
             Probes { offsets, planes: [map, NOTHING] }
         } else {

@@ -41,6 +41,42 @@ fn a_simple_rule_is_learnt_and_leaves_know_the_way_to_a_joint() {
 }
 
 #[test]
+fn maps_of_the_neck_tell_apart_what_depth_cannot_and_the_thesis_share_never_reads_them() {
+    // A bar along which depth is the same everywhere: only the way from the neck tells its quarters apart.
+    let mut set = TrainingSet::new(500.0, 60);
+    let (mut image, mut labels) = (ProbeImage::default(), Vec::new());
+    for shift in 0..6 {
+        image = ProbeImage::new(320, 48);
+        labels = vec![super::super::part::NONE; 320 * 48];
+        let mut pixels = Vec::new();
+        for row in 20..28 {
+            for column in 10 + shift..310 {
+                image.set(column, row, 1000);
+                labels[row * 320 + column] = if (column / 40) % 2 == 0 { 2 } else { 6 };
+                pixels.push(super::super::foreground::pixel(column, row, 1000));
+            }
+        }
+        image.measure_from_neck(&pixels, &CAMERA, &Point::new(0.0, 0.0, 1.0));
+        let joints = [Point::new(0.0, 0.0, 1.0); VOTED];
+        set.add(&Example { image: &image, labels: &labels, camera: CAMERA, joints }, 7);
+    }
+    // Judged far from the bar's ends, on the last of the images.
+    let right = |tree: &Tree| {
+        let class = |column: u16| {
+            let leaf = tree.leaf_content(tree.leaf(&image, (f32::from(column), 24.0), 1.0)).unwrap();
+            if leaf.shares[2] > leaf.shares[6] { 2 } else { 6 }
+        };
+        (60..260).filter(|column| class(*column) == labels[24 * 320 + usize::from(*column)]).count()
+    };
+    let grow = |neck_share| train(&set, &Settings { neck_share, smallest: 40, ..settings() }, &|_| ()).unwrap();
+    let (depth_alone, both) = (grow(0.0), grow(0.5));
+    assert!(depth_alone.nodes.iter().all(|node| node.planes == [0; 2]));
+    assert!(both.nodes.iter().any(|node| node.planes != [0; 2]));
+    assert!(right(&both) > 150 && right(&depth_alone) < 140, "{} {}", right(&both), right(&depth_alone));
+    assert!(Settings { neck_share: 1.5, ..settings() }.check().is_err());
+}
+
+#[test]
 fn the_tree_is_the_same_whatever_the_number_of_threads() {
     let set = set(5);
     let grow = |threads| {
