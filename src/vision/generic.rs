@@ -22,8 +22,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_whole_and_not_too_large() {
-        assert!(forest().unwrap().trees().len() >= 2);
+    fn it_is_whole_has_three_trees_and_is_not_too_large() {
+        assert_eq!(forest().unwrap().trees().len(), 3);
         assert!(BYTES.len() <= 20 << 20);
     }
 }
