@@ -19,6 +19,8 @@ use std::time::Duration;
 
 /// How often a new image is looked for: a small part of a frame's 33 ms.
 const LOOK: Duration = Duration::from_millis(4);
+/// So many images may come before the camera's figures do: the two are published beside each other, and one is first.
+const IMAGES_BEFORE_FIGURES: u32 = 30;
 /// An operator measures the neck this well, in metres.
 const NECK_DEVIATION: f64 = 0.02;
 
@@ -34,6 +36,8 @@ pub(super) struct Sight {
     setup: CameraSetup,
     empty: Option<DepthImage>,
     trouble: String,
+    /// Images in a row that came without the camera's figures.
+    without_figures: u32,
 }
 
 impl Sight {
@@ -50,7 +54,7 @@ impl Sight {
             Some(file) => forest_in(&beside(file))?,
             None => generic::forest().map_err(Failure::fault)?,
         };
-        Ok(Some(Self { finder: PoseFinder::new(forest), setup, empty, trouble: String::new() }))
+        Ok(Some(Self { finder: PoseFinder::new(forest), setup, empty, trouble: String::new(), without_figures: 0 }))
     }
 
     /// The person's pose in `base` from an image; `place` tells the camera's from its frame's name.
@@ -63,8 +67,10 @@ impl Sight {
         place: impl FnOnce(&str) -> Result<Pose, String>,
     ) -> Result<BodyPose, String> {
         let Some([fx, _, cx, _, fy, cy, ..]) = frame.camera_matrix else {
+            self.without_figures += 1;
             return Err("depth images come without camera_info: start the camera's driver with its calibration".into());
         };
+        self.without_figures = 0;
         let image = frame.image().map_err(|error| error.to_string())?;
         let mount = self.setup.place.map_or_else(|| place(&frame.frame), |place| Ok(place.pose()))?;
         let view = View {
@@ -91,6 +97,7 @@ impl Sight {
                 Some(Input::Body(pose))
             }
             Err(reason) if reason == self.trouble => None,
+            Err(_) if (1..IMAGES_BEFORE_FIGURES).contains(&self.without_figures) => None,
             Err(reason) => {
                 self.trouble.clone_from(&reason);
                 Some(Input::Link(LinkEvent::CannotSee { reason }))
@@ -158,7 +165,13 @@ mod tests {
         let middle = nalgebra::center(&arms.left.shoulder, &arms.right.shoulder);
         let neck_metres = [middle.x, middle.y, middle.z + 0.11];
         let setup = CameraSetup { neck_metres, facing: Facing::UpperEdge, empty: None, place: None };
-        Sight { finder: PoseFinder::new(generic::forest().unwrap()), setup, empty: None, trouble: String::new() }
+        Sight {
+            finder: PoseFinder::new(generic::forest().unwrap()),
+            setup,
+            empty: None,
+            trouble: String::new(),
+            without_figures: 0,
+        }
     }
 
     /// What the camera on the robot's head sends of the simulated person.
@@ -200,8 +213,14 @@ mod tests {
     fn what_keeps_from_seeing_is_told_once_with_a_remedy_and_a_pose_ends_it() {
         let mut sight = sight();
         let uncalibrated = DepthFrame { camera_matrix: None, ..frame() };
+        // The camera's figures may come a little after its first images.
+        for _ in 1..IMAGES_BEFORE_FIGURES {
+            let unseen = sight.see(&uncalibrated, |_| Ok(Pose::identity()));
+            assert_eq!(sight.tell(unseen), None);
+        }
         let words = sight.see(&uncalibrated, |_| Ok(Pose::identity())).unwrap_err();
         assert!(words.contains("camera_info"), "{words}");
+        assert!(sight.tell(Err(words)).is_some());
         let lost = sight.see(&frame(), |name| Err(format!("nobody says where {name} is")));
         assert_eq!(lost, Err("nobody says where camera_depth_optical_frame is".to_owned()));
         assert!(matches!(sight.tell(lost.clone()), Some(Input::Link(LinkEvent::CannotSee { .. }))));

@@ -26,8 +26,10 @@ use bones::Bones;
 use mode::{ModeFinder, Modes, VotePoint};
 use nalgebra::Matrix3;
 
-/// Every second column and row votes: neighbours tell the same.
-const VOTING_STEP: u16 = 2;
+/// Every second pixel of every second row is asked for joints: neighbours tell the same.
+const STEP: u16 = 2;
+/// Pixels of the image that each one asked stands for.
+const PIXELS_EACH: usize = (STEP * STEP) as usize;
 /// A pixel whose leaves give a joint's parts less than this share has no say about it.
 const LEAST_SHARE: f32 = 0.15;
 /// Added to a vote's variance in square metres, so that no single leaf outweighs all others.
@@ -65,7 +67,7 @@ impl CameraJoints {
     }
 }
 
-/// A foreground pixel with what its leaves say.
+/// A foreground pixel of those that are asked, with what its leaves say.
 #[derive(Clone, Copy, Debug)]
 struct Classified {
     pixel: Pixel,
@@ -78,8 +80,10 @@ pub struct PoseFinder {
     forest: Forest,
     probe: ProbeImage,
     pixels: Vec<Pixel>,
+    /// Those of them that are asked.
+    asked: Vec<Pixel>,
     classified: Vec<Classified>,
-    /// The leaf of each pixel, for each tree.
+    /// The leaf of each pixel that went through the trees last, for each tree.
     leaves: Vec<Vec<u32>>,
     votes: [Vec<VotePoint>; VOTED],
     modes: ModeFinder,
@@ -98,6 +102,7 @@ impl PoseFinder {
             forest,
             probe: ProbeImage::default(),
             pixels: Vec::new(),
+            asked: Vec::new(),
             classified: Vec::new(),
             leaves: Vec::new(),
             votes: Default::default(),
@@ -160,11 +165,14 @@ impl PoseFinder {
         let (width, height) = (image.width(), image.height());
         self.camera = view.probe_camera(width, height);
         self.classified.clear();
+        self.pixels.clear();
         for (index, (label, depth)) in labels.iter().zip(image.millimetres()).enumerate() {
             if *depth > 0 && usize::from(*label) < PARTS {
                 let place = if view.facing == Facing::UpperEdge { width * height - 1 - index } else { index };
                 let pixel = foreground::pixel(place % width, place / width, *depth);
-                self.classified.push(Classified { pixel, label: *label });
+                if is_asked(&pixel) {
+                    self.classified.push(Classified { pixel, label: *label });
+                }
             }
         }
         Ok(self.lay_bones(&view.probe_neck(), &PerSide::default()))
@@ -190,7 +198,7 @@ impl PoseFinder {
         joints
     }
 
-    /// A joint in the last image by the thesis' rule, the middle of its part; `None` where that is not seen, and for elbow and
+    /// A joint in the last image by the thesis' rule, the middle of its part (of a quarter of its pixels, evenly spread); `None` where that is not seen, and for elbow and
     /// wrist, which the thesis leaves out.
     #[must_use]
     pub fn mean_of_part(&self, side: Side, joint: Joint) -> Option<Point> {
@@ -202,53 +210,45 @@ impl PoseFinder {
     }
 
     /// The most probable part of each pixel of the last image as it came: labels as in [`super::part`], `NONE` elsewhere.
-    pub fn labels(&self, into: &mut Vec<u8>) {
+    ///
+    /// Joints need a quarter of the pixels; the others go through the trees only here.
+    pub fn labels(&mut self, into: &mut Vec<u8>) {
         let (width, height) = (self.probe.width(), self.probe.height());
         into.clear();
         into.resize(width * height, NONE);
-        for found in self.classified.iter().filter(|found| found.label != OTHER) {
-            let index = usize::from(found.pixel.row) * width + usize::from(found.pixel.column);
+        walk_all(&self.forest, (&self.probe, &self.camera), &self.pixels, &mut self.leaves);
+        for (index, pixel) in self.pixels.iter().enumerate() {
+            let (label, _) = most(&shares(ends(&self.forest, &self.leaves, index)));
+            let index = usize::from(pixel.row) * width + usize::from(pixel.column);
             let index = if self.facing == Facing::UpperEdge { width * height - 1 - index } else { index };
-            if let Some(label) = into.get_mut(index) {
-                *label = found.label;
+            if let Some(slot) = into.get_mut(index).filter(|_| label != OTHER) {
+                *slot = label;
             }
         }
     }
 
-    /// Sends every pixel through every tree; every second one of every second row votes.
-    #[expect(clippy::cast_possible_truncation, reason = "a ratio of focal lengths")]
+    /// Sends the pixels that are asked through every tree; all of them vote.
     fn classify(&mut self, camera: &Intrinsics) {
         self.classified.clear();
         self.votes.iter_mut().for_each(Vec::clear);
-        let ratio = (camera.fx / self.forest.focal) as f32;
-        self.leaves.resize_with(self.forest.trees().len(), Vec::new);
-        for (tree, leaves) in self.forest.trees().iter().zip(&mut self.leaves) {
-            walk::leaves(tree, &self.probe, &self.pixels, ratio, leaves);
-        }
+        self.asked.clear();
+        self.asked.extend(self.pixels.iter().filter(|pixel| is_asked(pixel)));
+        walk_all(&self.forest, (&self.probe, camera), &self.asked, &mut self.leaves);
         let mut certain = 0_u64;
         let full = 255 * self.forest.trees().len().max(1);
-        for (index, pixel) in self.pixels.iter().enumerate() {
-            let ends = || {
-                let ends = self.forest.trees().iter().zip(&self.leaves);
-                ends.filter_map(|(tree, leaves)| leaves.get(index).and_then(|number| tree.leaf_content(*number)))
-            };
-            let mut shares = [0_u32; CLASSES];
-            for leaf in ends() {
-                shares.iter_mut().zip(leaf.shares).for_each(|(sum, share)| *sum += u32::from(share));
-            }
-            let (label, share) = most(&shares);
+        for (index, pixel) in self.asked.iter().enumerate() {
+            let summed = shares(ends(&self.forest, &self.leaves, index));
+            let (label, share) = most(&summed);
             certain += u64::from(share);
             self.classified.push(Classified { pixel: *pixel, label });
-            if pixel.column.is_multiple_of(VOTING_STEP) && pixel.row.is_multiple_of(VOTING_STEP) {
-                let depth = f64::from(pixel.depth) / 1000.0;
-                let point = camera.point(f64::from(pixel.column), f64::from(pixel.row), depth);
-                let shares = shares.map(|share| share as f32 / full as f32);
-                for leaf in ends() {
-                    cast_votes(&mut self.votes, leaf, &shares, &point);
-                }
+            let depth = f64::from(pixel.depth) / 1000.0;
+            let point = camera.point(f64::from(pixel.column), f64::from(pixel.row), depth);
+            let shares = summed.map(|share| share as f32 / full as f32);
+            for leaf in ends(&self.forest, &self.leaves, index) {
+                cast_votes(&mut self.votes, leaf, &shares, &point);
             }
         }
-        self.certainty = certain as f64 / (full * self.pixels.len().max(1)) as f64;
+        self.certainty = certain as f64 / (full * self.asked.len().max(1)) as f64;
     }
 
     /// The places where each joint of an arm may be.
@@ -257,6 +257,41 @@ impl PoseFinder {
         Joint::ALL
             .map(|joint| votes.get(vote_index(side, joint)).map(|votes| modes.find(votes, neck)).unwrap_or_default())
     }
+}
+
+/// Whether a pixel is one of those that are asked for joints.
+const fn is_asked(pixel: &Pixel) -> bool {
+    pixel.column.is_multiple_of(STEP) && pixel.row.is_multiple_of(STEP)
+}
+
+/// Sends pixels through every tree.
+#[expect(clippy::cast_possible_truncation, reason = "a ratio of focal lengths")]
+fn walk_all(
+    forest: &Forest,
+    (probe, camera): (&ProbeImage, &Intrinsics),
+    pixels: &[Pixel],
+    leaves: &mut Vec<Vec<u32>>,
+) {
+    let ratio = (camera.fx / forest.focal) as f32;
+    leaves.resize_with(forest.trees().len(), Vec::new);
+    for (tree, leaves) in forest.trees().iter().zip(leaves) {
+        walk::leaves(tree, probe, pixels, ratio, leaves);
+    }
+}
+
+/// The leaves that a pixel ends in, one a tree.
+fn ends<'a>(forest: &'a Forest, leaves: &'a [Vec<u32>], index: usize) -> impl Iterator<Item = &'a Leaf> {
+    let trees = forest.trees().iter().zip(leaves);
+    trees.filter_map(move |(tree, leaves)| leaves.get(index).and_then(|number| tree.leaf_content(*number)))
+}
+
+/// The summed shares of each class in leaves, in 255ths.
+fn shares<'a>(leaves: impl Iterator<Item = &'a Leaf>) -> [u32; CLASSES] {
+    let mut shares = [0_u32; CLASSES];
+    for leaf in leaves {
+        shares.iter_mut().zip(leaf.shares).for_each(|(sum, share)| *sum += u32::from(share));
+    }
+    shares
 }
 
 /// The most probable class and its summed share; of equal ones the lowest.

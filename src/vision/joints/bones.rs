@@ -5,7 +5,7 @@
 
 use super::arm::{ArmModel, Expected, LIMBS, Skin};
 use super::chain::SegmentLengths;
-use super::{Classified, LEAST_DEVIATION};
+use super::{Classified, LEAST_DEVIATION, PIXELS_EACH};
 use crate::body::{Joint, Side};
 use crate::geometry::{Point, Vector};
 use crate::vision::camera::Intrinsics;
@@ -13,7 +13,7 @@ use crate::vision::part::{CLASSES, Part, SHOULDER_SHARE, parts_of};
 use nalgebra::Matrix3;
 
 /// Points of skin that a part is thinned to: more tell the same.
-const MOST_SKIN: usize = 250;
+const MOST_SKIN: usize = 150;
 /// A part of fewer pixels has no middle to begin at.
 const LEAST_PIXELS: usize = 12;
 /// The shoulder's centre from the neck's root, in metres: outwards, and away from a camera above.
@@ -64,7 +64,7 @@ pub(super) struct Bones {
     unit_areas: Vec<f64>,
 }
 
-/// Pixels of each class.
+/// Pixels of each class, of those that were asked.
 pub(super) fn counts(pixels: &[Classified]) -> [usize; CLASSES] {
     let mut counts = [0; CLASSES];
     for found in pixels {
@@ -140,11 +140,11 @@ impl Bones {
                 sum.1 += 1;
             }
             self.skin.push(skin(&place, limb));
-            self.unit_areas.push(every as f64 / (camera.fx * camera.fy));
+            self.unit_areas.push((every * PIXELS_EACH) as f64 / (camera.fx * camera.fy));
         }
         let mut middles = [None; LIMBS];
         for ((middle, (sum, count)), pixels) in middles.iter_mut().zip(sums).zip(of_side.iter().skip(1)) {
-            if *pixels >= LEAST_PIXELS && count > 0 {
+            if *pixels * PIXELS_EACH >= LEAST_PIXELS && count > 0 {
                 let mean = sum / f64::from(count);
                 *middle = Some(Point::from(mean + mean.normalize() * SKIN_TO_AXIS));
             }

@@ -2,7 +2,7 @@
 //!
 //! It finds the middle of the skin that is seen, not the joint's centre, and knows neither elbow nor wrist. Kept to compare with.
 
-use super::Classified;
+use super::{Classified, PIXELS_EACH};
 use crate::body::{Joint, Side};
 use crate::geometry::Point;
 use crate::vision::camera::Intrinsics;
@@ -34,7 +34,7 @@ pub(super) fn mean_of_part(pixels: &[Classified], camera: &Intrinsics, side: Sid
         .filter(|found| found.label == label)
         .map(|found| [f64::from(found.pixel.column), f64::from(found.pixel.row), f64::from(found.pixel.depth) / 1e3])
         .collect();
-    if own.len() < LEAST_PIXELS {
+    if own.len() * PIXELS_EACH < LEAST_PIXELS {
         return None;
     }
     let middle = [median(own.iter().map(|[x, ..]| *x))?, median(own.iter().map(|[_, y, _]| *y))?];
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn a_part_of_few_pixels_and_a_joint_without_a_part_are_not_seen() {
-        let pixels = square(Part::Hand.label(Side::Right), (40, 40), 4, 1000);
+        let pixels = square(Part::Hand.label(Side::Right), (40, 40), 2, 1000);
         assert_eq!(mean_of_part(&pixels, &CAMERA, Side::Right, Joint::Hand), None);
         assert_eq!(mean_of_part(&pixels, &CAMERA, Side::Right, Joint::Elbow), None);
         assert_eq!(mean_of_part(&[], &CAMERA, Side::Left, Joint::Shoulder), None);
