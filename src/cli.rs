@@ -20,6 +20,7 @@ mod fit;
 mod images;
 mod key;
 mod keys;
+mod label;
 mod log;
 mod profile;
 mod recording;
@@ -58,6 +59,7 @@ enum Command {
     Doctor(doctor::Arguments),
     Fit(fit::Arguments),
     Train(train::Arguments),
+    Label(label::Arguments),
     Reproduce(reproduce::Arguments),
     Torture(torture::Arguments),
     Bench(bench::Arguments),
@@ -100,6 +102,7 @@ fn run(line: CommandLine) -> Result<(), Failure> {
         Command::Doctor(arguments) => doctor::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
+        Command::Label(arguments) => label::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Torture(arguments) => torture::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -101,6 +101,26 @@ pub(super) fn read_depth(path: &Path) -> Result<DepthImage, String> {
         .map_err(|error| format!("{}: {error}", path.display()))
 }
 
+/// Reads a colour image: width, height, and three bytes a pixel (red, green, blue).
+///
+/// # Errors
+/// Names the file, what is wrong and what to do.
+pub(super) fn read_colour(path: &Path) -> Result<(usize, usize, Vec<u8>), String> {
+    let named = |error: &dyn Display, remedy: &str| format!("{}: {error}; {remedy}", path.display());
+    let file = File::open(path).map_err(|error| named(&error, "check that it is there and may be read"))?;
+    let broken =
+        |error: png::DecodingError| named(&error, "the image is damaged or cut short: record or copy it again");
+    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(broken)?;
+    let (kind, bits) = (reader.info().color_type, reader.info().bit_depth);
+    if (kind, bits) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+        let found = format!("{kind:?} of {} bits a channel", bits as u8);
+        return Err(named(&found, "a colour image is red, green and blue with 8 bits each: write it so"));
+    }
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
+    let frame = reader.next_frame(&mut bytes).map_err(broken)?;
+    Ok((frame.width as usize, frame.height as usize, bytes))
+}
+
 /// Writes a depth image, whole or not at all.
 pub(super) fn write_depth(path: &Path, image: &DepthImage) -> Result<(), Failure> {
     let bytes: Vec<u8> = image.millimetres().iter().flat_map(|reading| reading.to_be_bytes()).collect();

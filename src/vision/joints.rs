@@ -170,7 +170,7 @@ impl PoseFinder {
             if *depth > 0 && usize::from(*label) < PARTS {
                 let place = if view.facing == Facing::UpperEdge { width * height - 1 - index } else { index };
                 let pixel = foreground::pixel(place % width, place / width, *depth);
-                if is_asked(&pixel) {
+                if is_asked(pixel) {
                     self.classified.push(Classified { pixel, label: *label });
                 }
             }
@@ -232,7 +232,7 @@ impl PoseFinder {
         self.classified.clear();
         self.votes.iter_mut().for_each(Vec::clear);
         self.asked.clear();
-        self.asked.extend(self.pixels.iter().filter(|pixel| is_asked(pixel)));
+        self.asked.extend(self.pixels.iter().filter(|pixel| is_asked(**pixel)));
         walk_all(&self.forest, (&self.probe, camera), &self.asked, &mut self.leaves);
         let mut certain = 0_u64;
         let full = 255 * self.forest.trees().len().max(1);
@@ -260,7 +260,7 @@ impl PoseFinder {
 }
 
 /// Whether a pixel is one of those that are asked for joints.
-const fn is_asked(pixel: &Pixel) -> bool {
+const fn is_asked(pixel: Pixel) -> bool {
     pixel.column.is_multiple_of(STEP) && pixel.row.is_multiple_of(STEP)
 }
 

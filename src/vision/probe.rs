@@ -186,6 +186,20 @@ impl ProbeImage {
         }
     }
 
+    /// The image turned by half a turn.
+    #[must_use]
+    pub fn turned(&self) -> Self {
+        let mut turned = Self::new(self.width, self.height);
+        for row in 0..self.height {
+            for column in 0..self.width {
+                if let Some(depth) = self.foreground_at(column, row) {
+                    turned.set(self.width - 1 - column, self.height - 1 - row, depth);
+                }
+            }
+        }
+        turned
+    }
+
     /// The value at a place; background outside.
     #[must_use]
     #[inline]
@@ -303,6 +317,14 @@ mod tests {
             assert!((gain(&case.left, &case.right) - case.bits).abs() < 1e-9);
         }
         assert!(gain(&[0, 0], &[0, 0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn half_a_turn_twice_is_none() {
+        let image = golden().1;
+        let turned = image.turned();
+        assert_eq!(turned.at(0.0, 0.0), image.at((image.width() - 1) as f32, (image.height() - 1) as f32));
+        assert_eq!(turned.turned().values(), image.values());
     }
 
     #[test]

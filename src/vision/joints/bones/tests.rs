@@ -49,7 +49,7 @@ fn skin_of(ends: &[Point; 4], seen: [bool; LIMBS]) -> Vec<Classified> {
         pixel: foreground::pixel(index % 640, index / 640, (depth * 1000.0).round() as u16),
         label: *label,
     };
-    pixels.map(classified).filter(|found| super::super::is_asked(&found.pixel)).collect()
+    pixels.map(classified).filter(|found| super::super::is_asked(found.pixel)).collect()
 }
 
 fn lay(pixels: &[Classified], known: &[Option<Point>; 6]) -> [Found; 6] {
