@@ -60,7 +60,7 @@ impl WatchLink {
         let topic = format!("{watched}/snapshot");
         let subscribers = [
             rosrust::subscribe(&topic, QUEUE, move |Checked(message): Checked<valet_msgs::Snapshot>| {
-                take(&snapshots, &message.cbor)
+                take(&snapshots, &message.cbor);
             })
             .map_err(|error| RosError::registration(&topic, error))?,
             rosrust::subscribe("/robot/state", QUEUE, move |message: AnyAssemblyState| {
