@@ -2,6 +2,7 @@
 //!
 //! - `leaves of 31,000 pixels, one tree`: a frame's foreground through a depth-20 tree of the forest that valet brings along,
 //!   with vector instructions where the machine has them, and without;
+//! - `frame to joints`: a whole 640 x 480 image with the forest that valet brings along, three trees, nothing but this on the core;
 //! - `training kernel`: one tree of depth 1 on 20 images, which is one pass of 500 features x 10 thresholds over their samples;
 //! - `rendered image`: 640 x 480 with labels, without and with the sensor's noise.
 #![allow(missing_docs, reason = "criterion's macros make public items without documentation")]
@@ -14,7 +15,7 @@ use valet::sim::camera::{IMAGE_SIZE, SensorNoise};
 use valet::vision::foreground::Pixel;
 use valet::vision::probe::ProbeImage;
 use valet::vision::training::{Settings, train};
-use valet::vision::{generic, walk};
+use valet::vision::{PoseFinder, generic, walk};
 
 /// Foreground pixels of a frame.
 const PIXELS: usize = 31_000;
@@ -45,6 +46,14 @@ fn classification(criterion: &mut Criterion) {
     });
 }
 
+fn frame_to_joints(criterion: &mut Criterion) {
+    let image = Frame { person: STRANGER, number: 0 }.render();
+    let mut finder = PoseFinder::new(generic::forest().unwrap());
+    criterion.bench_function("frame to joints, three trees", |bencher| {
+        bencher.iter(|| finder.find(black_box(&image.rendering.depth), &image.view()).unwrap());
+    });
+}
+
 fn training(criterion: &mut Criterion) {
     let frames: Vec<Frame> = Frame::list(20, 1, STRANGER).collect();
     let set = training_set(&frames, 545.0, 63, &|| ());
@@ -66,5 +75,5 @@ fn rendering(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, classification, training, rendering);
+criterion_group!(benches, classification, frame_to_joints, training, rendering);
 criterion_main!(benches);

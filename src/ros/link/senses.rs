@@ -150,3 +150,18 @@ fn subscribe_camera(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription
         Subscription::new(need("/tf_static", 64, ANY_RATE, false), sink, transforms(true))?,
     ])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_image_wins_and_is_taken_once() {
+        let depth = NewestDepth::default();
+        for width in [1, 2, 3] {
+            depth.put(DepthFrame { width, ..DepthFrame::default() });
+        }
+        assert_eq!(depth.take().map(|frame| frame.width), Some(3));
+        assert_eq!(depth.take(), None);
+    }
+}

@@ -216,6 +216,19 @@ fn at(numbers: &Numbers, index: usize) -> f64 {
     numbers.get(index).copied().unwrap_or(0.0)
 }
 
+/// The gradient at both ends of a limb along a direction, each end with its factor.
+fn of_ends(limb: usize, direction: &Vector, [start, end]: [f64; 2]) -> [(usize, f64); 6] {
+    let first = 3 * limb;
+    [
+        (first, start * direction.x),
+        (first + 1, start * direction.y),
+        (first + 2, start * direction.z),
+        (first + 3, end * direction.x),
+        (first + 4, end * direction.y),
+        (first + 5, end * direction.z),
+    ]
+}
+
 /// The normal equations: sums of weighted gradients' products, and of gradients times what is off.
 #[derive(Debug)]
 struct Sums {
@@ -250,56 +263,19 @@ impl Sums {
 
     /// Skin `off` its limb's radius, `normal` pointing from the axis to it, beside a `foot` between both ends.
     fn add_skin(&mut self, limb: usize, normal: &Vector, foot: f64, off: f64, weight: f64) {
-        let (first, rest) = (3 * limb, 1.0 - foot);
+        let [a, b, c, d, e, f] = of_ends(limb, normal, [foot - 1.0, -foot]);
         let radius = FIRST_RADIUS + limb;
-        self.add(
-            [
-                (first, -rest * normal.x),
-                (first + 1, -rest * normal.y),
-                (first + 2, -rest * normal.z),
-                (first + 3, -foot * normal.x),
-                (first + 4, -foot * normal.y),
-                (first + 5, -foot * normal.z),
-                (radius, -rest),
-                (radius + 1, -foot),
-            ],
-            off,
-            weight,
-        );
+        self.add([a, b, c, d, e, f, (radius, foot - 1.0), (radius + 1, -foot)], off, weight);
     }
 
     /// Skin `off` along a limb's direction from the border at a share between both ends.
     fn add_border(&mut self, limb: usize, direction: &Vector, share: f64, off: f64, weight: f64) {
-        let (first, rest) = (3 * limb, 1.0 - share);
-        self.add(
-            [
-                (first, -rest * direction.x),
-                (first + 1, -rest * direction.y),
-                (first + 2, -rest * direction.z),
-                (first + 3, -share * direction.x),
-                (first + 4, -share * direction.y),
-                (first + 5, -share * direction.z),
-            ],
-            off,
-            weight,
-        );
+        self.add(of_ends(limb, direction, [share - 1.0, -share]), off, weight);
     }
 
     /// A limb that is too long by `off`.
     fn add_length(&mut self, limb: usize, direction: &Vector, off: f64, weight: f64) {
-        let first = 3 * limb;
-        self.add(
-            [
-                (first, -direction.x),
-                (first + 1, -direction.y),
-                (first + 2, -direction.z),
-                (first + 3, direction.x),
-                (first + 4, direction.y),
-                (first + 5, direction.z),
-            ],
-            off,
-            weight,
-        );
+        self.add(of_ends(limb, direction, [-1.0, 1.0]), off, weight);
     }
 
     fn solve(self) -> Option<(Numbers, Normal)> {
