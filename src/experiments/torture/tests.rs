@@ -51,8 +51,9 @@ fn s_39_arms_that_were_slowed_or_fast_stand_in_time_after_a_hold() {
 
 #[test]
 fn a_clock_that_jumps_ahead_does_not_hurry_an_arm() {
-    // A jump of some seconds counted as two beats: the arm went on a third faster for one of them.
-    for seed in [2_001_439, 3_000_497] {
+    // A jump of some seconds counted as two beats: the arm went on a third faster for one of them. In the last of these trials
+    // the clock jumps by hardly more than is made up for.
+    for seed in [2_001_439, 3_000_497, 5_102_586] {
         assert_eq!(torture(seed).violation, None, "seed {seed}");
     }
 }

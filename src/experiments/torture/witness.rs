@@ -59,9 +59,8 @@ struct Arm {
     moved: Option<Stamp>,
 }
 
-/// Seconds within which a beat that came late is still made up for: until the robot's own time-out has stopped the arms, and
-/// a beat for rounding.
-const LATE: f64 = 0.21;
+/// Seconds within which a beat that came late is still made up for: until the robot's own time-out has stopped the arms.
+const LATE: f64 = 0.2;
 
 /// The account of one trial.
 #[derive(Debug)]
