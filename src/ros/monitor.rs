@@ -76,6 +76,8 @@ pub(super) struct Monitor {
     pub(super) definitions: Vec<Definition>,
     required: bool,
     expected_hertz: (f64, f64),
+    /// Its publisher says once what holds for good.
+    said_once: bool,
     state: Arc<Mutex<State>>,
 }
 
@@ -92,6 +94,7 @@ impl Monitor {
             definitions: vec![definition],
             required,
             expected_hertz,
+            said_once: false,
             state: Arc::new(Mutex::new(state)),
         }
     }
@@ -107,6 +110,11 @@ impl Monitor {
         let definition = |digest| Definition { kind: kind.clone(), digest };
         let definitions = digests.into_iter().map(definition).collect();
         Self { definitions, ..self }
+    }
+
+    /// The same where the publisher says once what holds for good.
+    pub(super) fn said_once(self) -> Self {
+        Self { said_once: true, ..self }
     }
 
     fn kind(&self) -> String {
@@ -142,9 +150,10 @@ impl Monitor {
         });
     }
 
-    /// True where somebody publishes and nothing has come for `span`.
+    /// True where somebody publishes and nothing has come for `span`; of what is said once, where nothing ever came.
     pub(super) fn is_silent(&self, now: Stamp, span: Duration) -> bool {
-        self.with(|state| !state.publishers.is_empty() && state.freshness.age(now).is_none_or(|age| age > span))
+        let is_late = |state: &State| state.freshness.age(now).is_none_or(|age| age > span && !self.said_once);
+        self.with(|state| !state.publishers.is_empty() && is_late(state))
     }
 
     pub(super) fn report(&self, now: Stamp) -> TopicReport {
@@ -184,6 +193,16 @@ mod tests {
         monitor.observe(at(5_000), None);
         assert!(!monitor.is_silent(at(6_000), Duration::from_secs(2)));
         assert!(monitor.is_silent(at(7_001), Duration::from_secs(2)));
+    }
+
+    #[test]
+    fn what_is_said_once_is_silent_only_as_long_as_it_was_not_heard() {
+        let monitor = Monitor::new("/tf_static", definition(), (0.0, f64::INFINITY), false).said_once();
+        let at = |milliseconds: u64| Stamp::from_nanoseconds(milliseconds * 1_000_000);
+        monitor.set_publishers(vec!["/robot".into()]);
+        assert!(monitor.is_silent(at(5_000), Duration::from_secs(2)));
+        monitor.observe(at(5_000), None);
+        assert!(!monitor.is_silent(at(3_600_000), Duration::from_secs(2)));
     }
 
     #[test]

@@ -76,6 +76,11 @@ impl Subscription {
         Self { monitor: self.monitor.reading(digests), ..self }
     }
 
+    /// The same where the publisher says once what holds for good: silence is no fault then.
+    pub(super) fn said_once(self) -> Self {
+        Self { monitor: self.monitor.said_once(), ..self }
+    }
+
     /// Gives the old subscription up and makes a new one.
     pub(super) fn renew(&mut self) -> Result<(), RosError> {
         self.current = None;

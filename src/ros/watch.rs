@@ -28,10 +28,39 @@ const PERIOD: Duration = Duration::from_secs(1);
 const NAP: Duration = Duration::from_millis(50);
 /// A published topic that is silent for so long is subscribed to anew.
 const SILENCE: Duration = Duration::from_secs(2);
-/// Not more often than this, so that a publisher that has nothing to say is not pestered.
+/// A silent topic is subscribed to anew after this, and then after twice as long each time: the transport keeps a thread and a
+/// connection of each subscription that was given up until its publisher says something again.
 const RENEWAL: Duration = Duration::from_secs(5);
+/// The longest time between two such attempts.
+const RAREST_RENEWAL: Duration = Duration::from_secs(60);
 /// The robot's own nodes that may enable it (two loaders run on every Baxter).
 const ROBOTS_OWN: [&str; 2] = ["/rcloader_left", "/rcloader_right"];
+
+/// When a silent topic is subscribed to anew.
+#[derive(Clone, Copy, Debug)]
+struct Renewal {
+    last: Instant,
+    wait: Duration,
+}
+
+impl Renewal {
+    const fn new(now: Instant) -> Self {
+        Self { last: now, wait: RENEWAL }
+    }
+
+    /// Whether it is time for the next attempt. What is heard, or has no publisher, begins with short waits again.
+    fn is_due(&mut self, now: Instant, is_silent: bool) -> bool {
+        if !is_silent {
+            self.wait = RENEWAL;
+            return false;
+        }
+        let is_due = now.saturating_duration_since(self.last) > self.wait;
+        if is_due {
+            *self = Self { last: now, wait: (self.wait * 2).min(RAREST_RENEWAL) };
+        }
+        is_due
+    }
+}
 
 /// What this node has with the master, as the master itself once said.
 #[derive(Debug, Default)]
@@ -47,7 +76,7 @@ pub(super) struct Watch {
     node: String,
     uri: String,
     sink: Sink,
-    subscriptions: Vec<(Subscription, Instant)>,
+    subscriptions: Vec<(Subscription, Renewal)>,
     registrations: Registrations,
     is_lost: bool,
     /// Topics on which nobody else may publish, as the master knows them.
@@ -61,7 +90,7 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) fn new(master: &str, node: &str, sink: Sink, subscriptions: Vec<Subscription>) -> Self {
-        let begin = Instant::now();
+        let begin = Renewal::new(Instant::now());
         Self {
             master: master.to_owned(),
             node: node.to_owned(),
@@ -213,21 +242,41 @@ impl Watch {
 
     fn renew_silent(&mut self, graph: &Graph) {
         let mut publishers = Vec::new();
-        for (subscription, renewed) in &mut self.subscriptions {
+        for (subscription, renewal) in &mut self.subscriptions {
             let monitor = subscription.monitor.clone();
             let nodes = graph.publishers_of(&monitor.resolved);
             monitor.set_publishers(nodes.to_vec());
             let is_silent = monitor.is_silent(now(), SILENCE);
             let publisher = |node: &String| Publisher { node: node.clone(), monitor: monitor.clone(), is_silent };
             publishers.extend(nodes.iter().map(publisher));
-            if is_silent && renewed.elapsed() > RENEWAL {
+            if renewal.is_due(Instant::now(), is_silent) {
                 // Where it fails, the topic stays silent, is shown as such, and is tried again.
                 let _ = subscription.renew();
-                *renewed = Instant::now();
             }
         }
         if let Some(definitions) = &self.definitions {
             definitions.look_at(publishers);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_silent_topic_is_tried_again_ever_more_rarely_and_soon_again_once_it_was_heard() {
+        let begin = Instant::now();
+        let mut renewal = Renewal::new(begin);
+        let mut tried = Vec::new();
+        for second in 0..600 {
+            if renewal.is_due(begin + Duration::from_secs(second), true) {
+                tried.push(second);
+            }
+        }
+        assert_eq!(tried[..5], [6, 17, 38, 79, 140]);
+        assert_eq!(tried.len(), 12, "once a minute at last");
+        assert!(!renewal.is_due(begin + Duration::from_secs(600), false));
+        assert!(renewal.is_due(begin + Duration::from_secs(606), true));
     }
 }

@@ -147,7 +147,7 @@ fn subscribe_camera(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription
         Subscription::new(need("/camera/depth/image_raw", 1, THIRTY_HERTZ, false), sink, image)?,
         Subscription::new(need("/camera/depth/camera_info", 1, THIRTY_HERTZ, false), sink, information)?,
         Subscription::new(need("/tf", 64, ANY_RATE, false), sink, transforms(false))?,
-        Subscription::new(need("/tf_static", 64, ANY_RATE, false), sink, transforms(true))?,
+        Subscription::new(need("/tf_static", 64, ANY_RATE, false), sink, transforms(true))?.said_once(),
     ])
 }
 
