@@ -138,7 +138,9 @@ impl<'a, const D: usize> State<'a, D> {
     /// Gives a moved component its new weight: the others shrink or grow so that all add up to 1, the totals follow, and
     /// what the next component takes of the points is gathered on the way.
     fn set_weight(&mut self, index: usize, weight: f64) {
-        let others: f64 = 1.0 - self.components.get(index).map_or(0.0, |component| component.weight);
+        let all = self.components.iter().enumerate();
+        // Summed and not taken from 1: what rounding had left beside 1 would grow by 1 / sum in every sweep.
+        let others: f64 = all.filter(|(other, _)| *other != index).map(|(_, component)| component.weight).sum();
         let sum = others + weight;
         let old_weight = self.components.get(index).map_or(0.0, |component| component.weight);
         for component in &mut self.components {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::Vector;
+use proptest::prelude::*;
 use serde_json::Value;
 
 fn points(text: &str) -> Vec<Vector> {
@@ -109,4 +110,28 @@ fn the_largest_number_of_components_is_reported_where_it_wins() {
     let found = fit(&cloud, &FitSettings::default(), 3).unwrap();
     assert_eq!(found.mixture.components().len(), 4);
     assert!(found.reached_most);
+}
+
+/// Some places of `D` numbers drawn from a seed, in a few heaps that lie apart.
+fn heaps<const D: usize>(count: usize, heaps: u64, seed: u64) -> Vec<SVector<f64, D>> {
+    let mut random = SplitMix64::new(seed);
+    let centres: Vec<SVector<f64, D>> =
+        (0..heaps).map(|_| SVector::from_fn(|_, _| random.between(-0.5, 0.5))).collect();
+    let place = |index: usize| centres[index % centres.len()];
+    (0..count).map(|index| place(index) + SVector::from_fn(|_, _| 0.1 * random.between(-0.5, 0.5))).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    // A component of nine numbers costs 27 points: with 60 points the weights before they are scaled add up to about a
+    // half, and an error of rounding that the scaling carried on would double in every sweep.
+    #[test]
+    fn few_points_give_weights_that_add_up_to_1(count in 1_usize..90, groups in 1_u64..6, seed in any::<u64>()) {
+        for restarts in [1, 3] {
+            let settings = FitSettings { restarts, ..FitSettings::default() };
+            fit(&heaps::<3>(count, groups, seed), &settings, seed).unwrap();
+            fit(&heaps::<9>(count, groups, seed), &settings, seed).unwrap();
+        }
+    }
 }
