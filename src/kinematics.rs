@@ -31,7 +31,7 @@ pub use description::JOINT_SUFFIXES;
 pub use difference::Difference;
 pub use inverse::{InverseError, TOLERANCE};
 pub use limits::{JOINT_TOLERANCE, JointLimits, MotionLimits, Workspace};
-pub use model::{ArmModel, BAXTER_URDF, ModelError, RobotModel, Tool};
+pub use model::{ArmModel, BAXTER_URDF, ModelError, Placement, RobotModel, Tool};
 pub use motion::{PairMotion, Setpoint};
 pub use plan::{Target, plan_pair, plan_postures};
 pub use posture::{Leg, dressing_orientation, dressing_postures, start_postures, start_postures_for, waiting_place};

@@ -5,9 +5,12 @@
 use super::JointVector;
 use crate::geometry::Pose;
 use nalgebra::{Isometry3, Matrix3, Rotation3, SMatrix, Translation3, UnitQuaternion, Vector3};
+use wide::f64x4;
 
 /// Number of joints of a Baxter arm.
 pub const JOINTS: usize = 7;
+/// [`JOINTS`], filled up to whole vectors of four.
+const LANES: usize = 8;
 
 /// A rigid transformation as matrix and vector: cheaper to compose than a quaternion in the inner loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,9 +36,8 @@ impl Frame {
         }
     }
 
-    /// Turns the frame about its own z axis by an angle in radians: only two columns change.
-    fn turned_about_z(mut self, angle: f64) -> Self {
-        let (sine, cosine) = angle.sin_cos();
+    /// Turns the frame about its own z axis by an angle of this sine and cosine: only two columns change.
+    fn turned_about_z(mut self, sine: f64, cosine: f64) -> Self {
         let x = self.rotation.column(0) * cosine + self.rotation.column(1) * sine;
         let y = self.rotation.column(1) * cosine - self.rotation.column(0) * sine;
         self.rotation.set_column(0, &x);
@@ -83,8 +85,9 @@ impl Chain {
     pub(super) fn frames(&self, joints: &JointVector) -> ArmFrames {
         let mut frame = Frame { rotation: Matrix3::identity(), translation: Vector3::zeros() };
         let mut links = [frame; JOINTS];
-        for ((link, origin), angle) in links.iter_mut().zip(&self.origins).zip(joints.iter()) {
-            frame = frame.then(origin).turned_about_z(*angle);
+        let (sines, cosines) = sines_and_cosines(joints);
+        for (((link, origin), sine), cosine) in links.iter_mut().zip(&self.origins).zip(sines).zip(cosines) {
+            frame = frame.then(origin).turned_about_z(sine, cosine);
             *link = frame;
         }
         ArmFrames { links, tip: frame.then(&self.tip) }
@@ -108,6 +111,18 @@ impl ArmFrames {
         }
         jacobian
     }
+}
+
+/// Sine and cosine of each angle (radians) and of 0 as the eighth: side by side, which takes a third of the time of seven calls.
+/// To within two units in the last place up to many turns; not a number where the angle is none or infinite.
+fn sines_and_cosines(joints: &JointVector) -> ([f64; LANES], [f64; LANES]) {
+    let [[s0, s1, e0, e1, w0, w1, w2]] = joints.data.0;
+    let (first, second) = (f64x4::new([s0, s1, e0, e1]).sin_cos(), f64x4::new([w0, w1, w2, 0.0]).sin_cos());
+    let side_by_side = |one: f64x4, other: f64x4| {
+        let ([a, b, c, d], [e, f, g, h]) = (one.to_array(), other.to_array());
+        [a, b, c, d, e, f, g, h]
+    };
+    (side_by_side(first.0, second.0), side_by_side(first.1, second.1))
 }
 
 /// The rotation that takes z to `axis`; for the axis that is opposite to z a half turn about x.

@@ -24,18 +24,20 @@ pub(super) fn check_path(
         })
     };
     let rules = Rules::new(model, scene, limits, &at(0));
-    (0..knots.left.len().max(knots.right.len())).try_for_each(|index| rules.check(&at(index)).map(|_| ()))
+    (0..knots.left.len().max(knots.right.len())).try_for_each(|index| rules.check(&at(index), rules.least_room).map(|_| ()))
 }
 
-/// Checks one configuration, with no allowance for where it came from, and returns the metres that are left beyond those to keep.
+/// Checks one configuration, with no allowance for where it came from, and returns the metres that are left beyond those to keep,
+/// or `most` (not negative) if there are more.
 pub(super) fn room_at(
     model: &RobotModel,
     scene: &Scene,
     joints: &PerSide<JointVector>,
     limits: &MotionLimits,
+    most: f64,
 ) -> Result<f64, MotionRefusal> {
     let grippers = (limits.minimum_gripper_distance, limits.maximum_gripper_distance);
-    Rules { model, scene, grippers, allowed: grippers, least_room: 0.0 }.check(joints)
+    Rules { model, scene, grippers, allowed: grippers, least_room: 0.0 }.check(joints, most)
 }
 
 /// The rules between the arms and their surroundings, with the state at the start of a motion.
@@ -50,28 +52,25 @@ struct Rules<'a> {
 impl<'a> Rules<'a> {
     fn new(model: &'a RobotModel, scene: &'a Scene, limits: &MotionLimits, start: &PerSide<JointVector>) -> Self {
         let grippers = (limits.minimum_gripper_distance, limits.maximum_gripper_distance);
-        let distance = gripper_distance(model, start);
+        let placed = model.placed(start);
+        let distance = placed.gripper_distance();
         // Where a rule is already broken, the motion may lead out of it but no deeper.
         let allowed = (grippers.0.min(distance) - SLACK, grippers.1.max(distance) + SLACK);
-        let least_room = model.tightest_pair(start, scene).room.min(0.0) - SLACK;
+        let least_room = placed.tightest(0.0, scene).room - SLACK;
         Self { model, scene, grippers, allowed, least_room }
     }
 
-    fn check(&self, joints: &PerSide<JointVector>) -> Result<f64, MotionRefusal> {
-        let distance = gripper_distance(self.model, joints);
+    /// The metres that are left, or `most` if there are more.
+    fn check(&self, joints: &PerSide<JointVector>, most: f64) -> Result<f64, MotionRefusal> {
+        let placed = self.model.placed(joints);
+        let distance = placed.gripper_distance();
         if !(self.allowed.0..=self.allowed.1).contains(&distance) {
             return Err(MotionRefusal::GripperDistance { distance, range: self.grippers });
         }
-        let tightest = self.model.tightest_pair(joints, self.scene);
+        let tightest = placed.tightest(most, self.scene);
         if tightest.room < self.least_room {
-            return Err(self.model.describe(&tightest, self.scene).into());
+            return Err(placed.describe(&tightest, self.scene).into());
         }
         Ok(tightest.room)
     }
-}
-
-/// Distance of the grippers' tips in metres.
-pub(super) fn gripper_distance(model: &RobotModel, joints: &PerSide<JointVector>) -> f64 {
-    let tips = joints.map(|side, joints| model.arm(side).forward(joints).translation.vector);
-    (tips.left - tips.right).norm()
 }

@@ -160,9 +160,10 @@ impl CollisionModel {
         Ok(model)
     }
 
-    /// The pair with the least room.
-    pub(super) fn tightest(&self, frames: &PerSide<ArmFrames>, scene: &Scene) -> Tightest {
-        let mut tightest = Tightest { room: f64::INFINITY, pair: Pair::None };
+    /// The pair with the least room, of those with less than `below`; where there is none, `below` itself and no pair.
+    /// The smaller `below`, the more pairs are known to be further apart by the balls round them.
+    pub(super) fn tightest(&self, frames: &PerSide<ArmFrames>, scene: &Scene, below: f64) -> Tightest {
+        let mut tightest = Tightest { room: below, pair: Pair::None };
         let placed = frames.map(|side, frames| placed(self.arms.get(side), frames));
         let person: Vec<Bounded> = scene.person.iter().map(|part| Bounded::new(part.shape)).collect();
         for (left_index, left) in placed.left.iter().enumerate() {

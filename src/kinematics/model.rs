@@ -3,7 +3,7 @@
 //! Reads a URDF and nothing else. It never guesses: a description that lacks a joint, a link or a limit is refused.
 
 use super::JointVector;
-use super::chain::{Chain, JOINTS, rotation_from_z};
+use super::chain::{ArmFrames, Chain, JOINTS, rotation_from_z};
 use super::collision::{CollisionModel, Proximity, Tightest};
 use super::description::Description;
 use super::limits::JointLimits;
@@ -12,7 +12,7 @@ use super::seeds::SeedTable;
 use crate::body::{PerSide, Side};
 use crate::geometry::Pose;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use thiserror::Error;
 
 /// The description that valet carries: the figures of Baxter's SDK 1.2.0 model, primitives only.
@@ -156,7 +156,10 @@ impl RobotModel {
     /// # Errors
     /// None in practice: the description is part of the program and under test.
     pub fn baxter() -> Result<Self, ModelError> {
-        Self::from_urdf(BAXTER_URDF, PerSide::default())
+        // Read once: whoever simulates thousands of trials would spend a tenth of the time on reading it.
+        static BAXTER: LazyLock<Result<RobotModel, ModelError>> =
+            LazyLock::new(|| RobotModel::from_urdf(BAXTER_URDF, PerSide::default()));
+        BAXTER.clone()
     }
 
     /// A robot from the text of its URDF, with the tool at each hand.
@@ -184,15 +187,49 @@ impl RobotModel {
     /// person. Joint positions in radians; a position that is not a number counts as contact.
     #[must_use]
     pub fn tightest(&self, joints: &PerSide<JointVector>, scene: &Scene) -> Proximity {
-        self.collision.describe(&self.tightest_pair(joints, scene), scene)
+        self.collision.describe(&self.collision.tightest(&self.frames(joints), scene, f64::INFINITY), scene)
     }
 
-    pub(super) fn tightest_pair(&self, joints: &PerSide<JointVector>, scene: &Scene) -> Tightest {
-        self.collision.tightest(&joints.map(|side, joints| self.arm(side).chain.frames(joints)), scene)
+    /// Where everything is: rules that ask for several things of the same joint positions work it out once.
+    #[must_use]
+    pub fn placed(&self, joints: &PerSide<JointVector>) -> Placement<'_> {
+        Placement { model: self, frames: self.frames(joints) }
+    }
+
+    fn frames(&self, joints: &PerSide<JointVector>) -> PerSide<ArmFrames> {
+        joints.map(|side, joints| self.arm(side).chain.frames(joints))
+    }
+}
+
+/// Where all parts of both arms are for some joint positions.
+#[derive(Debug)]
+pub struct Placement<'a> {
+    model: &'a RobotModel,
+    frames: PerSide<ArmFrames>,
+}
+
+impl Placement<'_> {
+    /// Distance of the grippers' tips in metres.
+    #[must_use]
+    pub fn gripper_distance(&self) -> f64 {
+        (self.frames.left.tip.translation - self.frames.right.tip.translation).norm()
+    }
+
+    /// The two things with the least room to spare, if that is less than `below` metres beyond what they are to keep. A position
+    /// that is not a number counts as contact.
+    #[must_use]
+    pub fn closer_than(&self, below: f64, scene: &Scene) -> Option<Proximity> {
+        let tightest = self.tightest(below, scene);
+        (tightest.room < below).then(|| self.describe(&tightest, scene))
     }
 
     pub(super) fn describe(&self, pair: &Tightest, scene: &Scene) -> Proximity {
-        self.collision.describe(pair, scene)
+        self.model.collision.describe(pair, scene)
+    }
+
+    /// The pair with the least room, of those with less than `below`; where there is none, `below` and no pair.
+    pub(super) fn tightest(&self, below: f64, scene: &Scene) -> Tightest {
+        self.model.collision.tightest(&self.frames, scene, below)
     }
 }
 

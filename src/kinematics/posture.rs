@@ -235,7 +235,7 @@ fn clearance(
     let last = scenes.len().saturating_sub(1);
     let mut least = f64::INFINITY;
     for (index, scene) in scenes.iter().enumerate().filter(|(index, _)| index % STRIDE == 0 || *index == last) {
-        least = least.min(room_at(model, scene, &at(index), limits)?);
+        least = room_at(model, scene, &at(index), limits, least)?;
         if least < at_least {
             return Ok(None);
         }

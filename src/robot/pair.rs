@@ -101,27 +101,21 @@ impl<L: Limb> GuardedPair<L> {
     /// Where a rule is broken already, the arms may leave, but go no deeper.
     fn judge_together(&self, here: &PerSide<JointVector>, next: &PerSide<JointVector>) -> Result<(), LimitBreach> {
         let range = (self.limits.minimum_gripper_distance, self.limits.maximum_gripper_distance);
-        let (before, distance) = (self.gripper_distance(here), self.gripper_distance(next));
+        let (here, next) = (self.model.placed(here), self.model.placed(next));
+        let (before, distance) = (here.gripper_distance(), next.gripper_distance());
         // No slack on what was before: tick by tick it would add up.
         let allowed = ((range.0 - SLACK).min(before), (range.1 + SLACK).max(before));
         if !(allowed.0..=allowed.1).contains(&distance) {
             return Err(LimitBreach { what: Limit::GripperDistance, value: distance, range });
         }
-        let tightest = self.model.tightest(next, &self.scene);
-        if tightest.distance >= tightest.least - SLACK {
-            return Ok(());
-        }
-        let before = self.model.tightest(here, &self.scene);
-        if tightest.distance - tightest.least >= before.distance - before.least {
+        let Some(tightest) = next.closer_than(-SLACK, &self.scene) else { return Ok(()) };
+        let room = tightest.distance - tightest.least;
+        let before = here.closer_than(f64::INFINITY, &self.scene);
+        if before.is_some_and(|before| room >= before.distance - before.least) {
             return Ok(());
         }
         let what = Limit::Clearance { first: tightest.first, second: tightest.second };
         Err(LimitBreach { what, value: tightest.distance, range: (tightest.least, f64::INFINITY) })
-    }
-
-    fn gripper_distance(&self, joints: &PerSide<JointVector>) -> f64 {
-        let tips = joints.map(|side, joints| self.model.arm(side).forward(joints).translation.vector);
-        (tips.left - tips.right).norm()
     }
 }
 
