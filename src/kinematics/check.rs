@@ -24,7 +24,8 @@ pub(super) fn check_path(
         })
     };
     let rules = Rules::new(model, scene, limits, &at(0));
-    (0..knots.left.len().max(knots.right.len())).try_for_each(|index| rules.check(&at(index), rules.least_room).map(|_| ()))
+    (0..knots.left.len().max(knots.right.len()))
+        .try_for_each(|index| rules.check(&at(index), rules.least_room).map(|_| ()))
 }
 
 /// Checks one configuration, with no allowance for where it came from, and returns the metres that are left beyond those to keep,

@@ -18,7 +18,7 @@ const KNOT_SPACING: f64 = 0.002;
 pub(super) const KNOT_ANGLE: f64 = 0.02;
 /// Most knots of a path: 3 m at the spacing above, more than an arm can reach.
 pub(super) const MOST_KNOTS: f64 = 1500.0;
-/// A joint that moves further than this (radians) from knot to knot jumps to another posture.
+/// A joint that moves further than this (radians) from knot to knot, at the spacing above, jumps to another posture.
 pub(super) const JUMP: f64 = 0.1;
 /// How far the left-over freedom goes towards the middle of the joint ranges on [`KNOT_SPACING`], as a share.
 const CENTRING: f64 = 0.004;
@@ -98,7 +98,8 @@ impl ArmModel {
         spans: f64,
     ) -> Result<Vec<JointVector>, MotionRefusal> {
         let mut knots: Vec<JointVector> = Vec::new();
-        let centring = CENTRING * line.spans() / spans;
+        let coarseness = line.spans() / spans;
+        let (centring, jump) = (CENTRING * coarseness, JUMP * coarseness.max(1.0));
         for share in shares(spans) {
             let guess = match knots.as_slice() {
                 [] => *start,
@@ -107,7 +108,7 @@ impl ArmModel {
             };
             let refused = || self.not_tracked(line, share, 1.0 / spans, start);
             let next = self.follow(&line.at(share), &guess).ok_or_else(refused)?;
-            if knots.last().is_some_and(|last| (next - last).amax() > JUMP) {
+            if knots.last().is_some_and(|last| (next - last).amax() > jump) {
                 return Err(refused());
             }
             knots.push(next);

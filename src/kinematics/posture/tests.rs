@@ -1,3 +1,4 @@
+use super::search::{Course, confirm};
 use super::*;
 use crate::kinematics::{BodyPart, Capsule, PairMotion, Target, plan_pair};
 use serde::Deserialize;
@@ -141,6 +142,20 @@ fn a_search_with_something_to_beat_finds_the_same_start_or_none() {
     let with_less_to_beat = search(all.room - 1e-6).unwrap();
     assert_eq!((with_less_to_beat.joints, with_less_to_beat.room.to_bits()), (all.joints, all.room.to_bits()));
     assert!(search(all.room).is_none(), "nothing has more room than the roomiest");
+}
+
+#[test]
+fn what_was_chosen_at_knots_far_apart_keeps_its_room_at_those_of_a_plan() {
+    let model = RobotModel::baxter().unwrap();
+    let limits = MotionLimits::default();
+    for path in paths() {
+        let scene = seated_beside(path);
+        let stages = stages(Side::Right, path);
+        let legs = [Leg { scene: &scene, stages: &stages }];
+        let chosen = roomiest_start(&model, &legs, &orientations(), &limits, f64::NEG_INFINITY).unwrap().unwrap();
+        let room = confirm(&model, &Course::new(&legs, &orientations(), 1.0), &chosen.joints, &limits).unwrap();
+        assert!((room - chosen.room).abs() < 1e-3, "{room} is not {}", chosen.room);
+    }
 }
 
 #[test]
