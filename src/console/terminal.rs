@@ -3,6 +3,7 @@
 //! Order of a panic: stop the robot, restore the terminal, log, tell. A signal or a lost terminal means hold, then leave.
 
 mod changes;
+mod frames;
 mod guard;
 mod runner;
 mod signals;

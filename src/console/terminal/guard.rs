@@ -1,5 +1,6 @@
 //! Takes the terminal and gives it back: at the end, at an error, and at a panic in any thread.
 
+use super::frames::Frames;
 use crate::console::StopHandle;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
@@ -29,9 +30,7 @@ const BUFFER: usize = 1 << 16;
 #[derive(Debug)]
 pub(super) struct TerminalGuard {
     screen: Screen,
-    /// What the terminal shows, and a buffer to draw the next frame into.
-    shown: Buffer,
-    spare: Buffer,
+    frames: Frames,
 }
 
 impl TerminalGuard {
@@ -40,7 +39,7 @@ impl TerminalGuard {
         take(mouse)?;
         let writer = BufWriter::with_capacity(BUFFER, io::stdout());
         match Terminal::new(CrosstermBackend::new(writer)) {
-            Ok(screen) => Ok(Self { screen, shown: Buffer::default(), spare: Buffer::default() }),
+            Ok(screen) => Ok(Self { screen, frames: Frames::default() }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -50,20 +49,14 @@ impl TerminalGuard {
 
     /// Draws one frame as one synchronized update: no terminal shows half of it. A frame that is the same as the last one is
     /// not sent at all.
-    pub(super) fn draw(&mut self, render: impl FnOnce(Rect, &mut Buffer)) -> io::Result<()> {
+    pub(super) fn draw(&mut self, render: impl Fn(Rect, &mut Buffer)) -> io::Result<()> {
         let area = Rect::from((Position::ORIGIN, self.screen.size()?));
-        let mut next = std::mem::take(&mut self.spare);
-        next.resize(area);
-        next.reset();
-        render(area, &mut next);
-        if next == self.shown {
-            self.spare = next;
+        if !self.frames.prepare(area, &render) {
             return Ok(());
         }
         queue!(self.screen.backend_mut(), BeginSynchronizedUpdate)?;
-        let drawn = self.screen.draw(|frame| frame.buffer_mut().clone_from(&next)).map(|_| ());
+        let drawn = self.frames.send(&mut self.screen, &render);
         execute!(self.screen.backend_mut(), EndSynchronizedUpdate)?;
-        self.spare = std::mem::replace(&mut self.shown, next);
         drawn
     }
 
@@ -74,7 +67,7 @@ impl TerminalGuard {
 
     /// Forgets what is on the terminal, so that the next frame draws everything.
     pub(super) fn clear(&mut self) -> io::Result<()> {
-        self.shown = Buffer::default();
+        self.frames.forget();
         // Not `clear`, which asks the terminal where its cursor is and so reads keys itself: a stop among them would be lost,
         // and a terminal that does not answer would be taken for one that is gone.
         let size = self.screen.size()?;
