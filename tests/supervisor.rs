@@ -293,3 +293,22 @@ fn the_same_seed_brings_the_same_decisions_and_another_seed_others() {
     assert!(first == decided(7));
     assert!(first != decided(8));
 }
+
+#[test]
+fn an_undo_brings_back_the_old_value_though_the_new_one_was_asked_for_twice() {
+    let mut bench = Bench::new();
+    bench.pass(0.1);
+    let key = || String::from("strategies.learning.optimiser.learning_rate");
+    let shown = |bench: &Bench| {
+        let snapshot = bench.trial.snapshot();
+        let row = snapshot.settings.iter().find(|row| row.key == key()).unwrap();
+        (row.value, row.previous)
+    };
+    let (before, _) = shown(&bench);
+    for _ in 0..2 {
+        bench.accept(Command::SetSetting { key: key(), value: 0.01 });
+    }
+    assert_eq!(shown(&bench), (0.01, Some(before)));
+    bench.accept(Command::UndoSetting { key: key() });
+    assert_eq!(shown(&bench), (before, Some(0.01)));
+}

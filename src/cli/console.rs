@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 /// The operator console on a ROS graph.
 ///
-/// The private parameters ~profile, ~strategy, ~seed, ~record and ~`dry_run` stand in for options that are not typed.
+/// The private parameters `~profile`, `~strategy`, `~seed`, `~record` and `~dry_run` stand in for options that are not typed.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own on the command line")]
 pub(super) struct Arguments {
@@ -208,7 +208,11 @@ pub(super) fn conclude(reason: Result<ExitReason, Failure>, recorded: Option<&Pa
         output.line(format!("recorded in {}", path.display()))?;
         output.line(format!("the program's own log is in {}", Places::of_this_machine().logs.display()))?;
     }
-    match reason? {
+    let reason = reason?;
+    if reason == ExitReason::Terminated {
+        Output::new(false).line("left on SIGTERM; a trial that this console led holds")?;
+    }
+    match reason {
         ExitReason::QuitAfterStop => Err(Failure::OperatorStop("the emergency stop was used".into())),
         ExitReason::Quit | ExitReason::BeginAnew | ExitReason::Terminated | ExitReason::TerminalLost => Ok(()),
     }

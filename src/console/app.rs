@@ -18,6 +18,9 @@ use crate::snapshot::{Snapshot, Watermark};
 use crate::time::Stamp;
 use ratatui::crossterm::event::{KeyEvent, KeyEventKind, MouseEvent, MouseEventKind};
 
+/// How many rows a notch of the mouse's wheel scrolls.
+const WHEEL_ROWS: usize = 3;
+
 /// What is to be done about an event.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reaction {
@@ -50,13 +53,30 @@ pub struct App {
     stop_key_pressed: bool,
     resistances: usize,
     answered: Option<Stamp>,
+    asked_setting: Option<AskedSetting>,
+}
+
+/// A value that was asked for and may not be in the snapshot yet: the next key goes on from it.
+#[derive(Clone, Debug)]
+struct AskedSetting {
+    key: String,
+    value: f64,
+    at: Stamp,
 }
 
 impl App {
     /// A console that has seen nothing yet.
     #[must_use]
     pub fn new(keys: KeyMap, view: ViewState) -> Self {
-        Self { keys, view, stop_was_latched: false, stop_key_pressed: false, resistances: 0, answered: None }
+        Self {
+            keys,
+            view,
+            stop_was_latched: false,
+            stop_key_pressed: false,
+            resistances: 0,
+            answered: None,
+            asked_setting: None,
+        }
     }
 
     /// Takes a newer snapshot in: a dialog about motion closes when a stop is latched.
@@ -95,26 +115,42 @@ impl App {
         if let Some(action) = self.keys.action(chord, self.view.screen) {
             return self.act(action, snapshot);
         }
-        self.say(format!("{chord} does nothing here; {} shows the keys", self.keys.first_key(Action::Help)));
+        self.say(self.why_nothing(chord));
         Vec::new()
     }
 
+    /// What a key that means nothing on this screen means elsewhere.
+    fn why_nothing(&self, chord: Chord) -> String {
+        let elsewhere = Screen::ALL.into_iter().find_map(|screen| Some((screen, self.keys.action(chord, screen)?)));
+        match elsewhere.and_then(|(screen, action)| Some((screen, action.entry()?))) {
+            Some((screen, entry)) => {
+                format!("{chord} does nothing here; on the {} screen: {}", screen.name(), entry.text)
+            }
+            None => format!("{chord} does nothing here; {} shows the keys", self.keys.first_key(Action::Help)),
+        }
+    }
+
     /// The mouse focuses and scrolls, and never acts.
-    pub fn on_mouse(&mut self, event: MouseEvent) -> Vec<Reaction> {
+    pub fn on_mouse(&mut self, event: MouseEvent, snapshot: &Snapshot) {
         if !self.view.mouse || self.view.dialog.is_some() {
-            return Vec::new();
+            return;
         }
         match event.kind {
-            MouseEventKind::ScrollUp => self.scroll_up(3),
-            MouseEventKind::ScrollDown => self.view.row = self.view.row.saturating_add(3),
-            MouseEventKind::Down(_) => {
-                if let Some(screen) = super::draw::tab_at(event.column, event.row, self.view.size) {
-                    self.show(screen);
-                }
-            }
+            MouseEventKind::ScrollUp => (0..WHEEL_ROWS).for_each(|_| self.scroll(Action::Up, snapshot)),
+            MouseEventKind::ScrollDown => (0..WHEEL_ROWS).for_each(|_| self.scroll(Action::Down, snapshot)),
+            MouseEventKind::Down(_) => self.focus_at(event.column, event.row),
             _ => {}
         }
-        Vec::new()
+    }
+
+    fn focus_at(&mut self, column: u16, row: u16) {
+        if let Some(screen) = super::draw::tab_at(column, row, self.view.size) {
+            self.show(screen);
+        } else if let Some(side) = super::draw::arm_at(self.view.screen, row, self.view.size)
+            && side != self.view.side
+        {
+            (self.view.side, self.view.mark) = (side, None);
+        }
     }
 
     /// The terminal has another size: selection and dialog stay.

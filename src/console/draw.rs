@@ -13,7 +13,8 @@ use super::screens;
 use super::theme::{Look, Role};
 use super::view::{Tier, ViewState};
 use super::widgets::text::{line, put, span};
-use crate::snapshot::{RecorderView, ReplayView, Snapshot, TrialPhase, Verdict, Watermark};
+use crate::body::Side;
+use crate::snapshot::{Level, RecorderView, ReplayView, Snapshot, TrialPhase, Verdict, Watermark};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -205,6 +206,14 @@ pub(super) const fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
+/// A verdict of the check-list as a word: what is to be looked at there need not be late.
+pub(super) const fn check_word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Late => "CHECK",
+        other => verdict_word(other),
+    }
+}
+
 fn tab_line<'a>(scene: &Scene<'a>) -> Line<'a> {
     let look = scene.look;
     let mut spans = Vec::new();
@@ -250,17 +259,30 @@ pub(super) fn tab_at(column: u16, row: u16, size: (u16, u16)) -> Option<Screen> 
     })
 }
 
+/// The arm whose plots lie at a row of the force screen: the left one's above, the right one's below.
+pub(super) fn arm_at(screen: Screen, row: u16, size: (u16, u16)) -> Option<Side> {
+    const FRAME_ROWS: u16 = 3;
+    if screen != Screen::Force || Tier::of(size.0, size.1) < Tier::Standard || row < FRAME_ROWS {
+        return None;
+    }
+    Some(if row < size.1 / 2 { Side::Left } else { Side::Right })
+}
+
+/// What the console itself says of the last key, or else the newest of the core's answers and the log: what came of a sign
+/// check, or why the trial holds, is seen on every screen.
 fn message_line<'a>(scene: &Scene<'a>) -> Line<'a> {
     if let Some(message) = &scene.view.message {
         return line(scene.look, if message.refused { Role::Late } else { Role::Text }, message.text.as_str());
     }
-    match scene.live.receipts.last() {
-        Some(answer) => {
-            let role = if answer.receipt.is_accepted() { Role::Muted } else { Role::Late };
-            line(scene.look, role, format!("{} {}", super::widgets::text::clock(answer.stamp), answer.receipt))
-        }
-        None => Line::default(),
-    }
+    let (answer, news) = (scene.live.receipts.last(), scene.live.log.last());
+    let news = news.filter(|news| news.level > Level::Debug && answer.is_none_or(|answer| news.stamp > answer.stamp));
+    let (stamp, text, is_grave) = match (news, answer) {
+        (Some(news), _) => (news.stamp, format!("{}: {}", news.source, news.text), news.level > Level::Information),
+        (None, Some(answer)) => (answer.stamp, answer.receipt.to_string(), !answer.receipt.is_accepted()),
+        (None, None) => return Line::default(),
+    };
+    let role = if is_grave { Role::Late } else { Role::Muted };
+    line(scene.look, role, format!("{} {text}", super::widgets::text::clock(stamp)))
 }
 
 /// The keys that are valid on this screen now; what cannot be done stands behind them with its reason.

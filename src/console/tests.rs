@@ -1,5 +1,6 @@
 //! The console as a whole, on a terminal made of memory.
 
+mod keys;
 mod pictures;
 mod stop_key;
 
@@ -16,12 +17,12 @@ const COLOUR: Look = Look { theme: ThemeName::Terminal, ascii: false };
 const MONO: Look = Look { theme: ThemeName::Mono, ascii: false };
 const ASCII: Look = Look { theme: ThemeName::Terminal, ascii: true };
 
-fn keys() -> KeyMap {
+fn usual_keys() -> KeyMap {
     KeyMap::new(&BTreeMap::new()).unwrap()
 }
 
 fn app(screen: Screen) -> App {
-    App::new(keys(), ViewState { screen, size: (120, 40), ..ViewState::default() })
+    App::new(usual_keys(), ViewState { screen, size: (120, 40), ..ViewState::default() })
 }
 
 /// The key that a text names.
@@ -39,7 +40,7 @@ fn drawn(snapshot: &Snapshot, view: &ViewState, look: Look, size: (u16, u16)) ->
     let area = Rect::new(0, 0, size.0, size.1);
     let view = ViewState { size, ..view.clone() };
     let mut buffer = Buffer::empty(area);
-    let keys = keys();
+    let keys = usual_keys();
     draw(&Scene { live: snapshot, view: &view, look, keys: &keys }, area, &mut buffer);
     buffer
 }

@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 /// How often the master is looked at.
 const PERIOD: Duration = Duration::from_secs(1);
 /// How often the watch looks whether it is to end.
-const NAP: Duration = Duration::from_millis(50);
+const NAP: Duration = Duration::from_millis(200);
 /// A published topic that is silent for so long is subscribed to anew.
 const SILENCE: Duration = Duration::from_secs(2);
 /// A silent topic is subscribed to anew after this, and then after twice as long each time: the transport keeps a thread and a

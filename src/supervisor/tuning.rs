@@ -74,6 +74,10 @@ impl Supervisor {
             return Err(format!("{value} {} is outside {low} to {high} {}", tunable.unit, tunable.unit));
         }
         let before = self.tunable_value(key);
+        if before.to_bits() == value.to_bits() {
+            // The old value stays the one that an undo brings back.
+            return Ok("it has that value already".into());
+        }
         self.apply_setting(key, value)?;
         self.show_settings();
         self.remember_previous(key, before);

@@ -1,26 +1,31 @@
 //! What the operator asks of the trial: questions before motion, lists of choices, settings.
 
-use super::{App, Reaction};
+use super::{App, AskedSetting, Reaction};
 use crate::body::Side;
 use crate::command::Command;
 use crate::console::ReplayRequest;
 use crate::console::app::refusal;
 use crate::console::dialog::{ChoiceItem, Dialog, TextPurpose};
 use crate::console::keymap::Action;
-use crate::snapshot::{Snapshot, TrialPhase, Watermark};
+use crate::snapshot::{SettingView, Snapshot, TrialPhase, Watermark};
 use crate::strategy::StrategyKind;
+use crate::time::Stamp;
+use std::time::Duration;
 
 /// How long a recording of the person's movement lasts, in seconds: the thesis recorded 5000 frames at 30 Hz a person in
 /// five movements (section 3.5.1), half a minute each.
 const MOVEMENT_SECONDS: f64 = 30.0;
 /// How far a replay moves at a key, in seconds.
 const SEEK_SECONDS: f64 = 10.0;
+/// How long a value that was asked for is taken for the newest while the snapshot still says another: the core answers
+/// within a beat of 10 ms, and what it refused must not count for long.
+const ANSWER_PATIENCE: Duration = Duration::from_millis(300);
 
 impl App {
     /// Does what an action says, or says why not.
     pub(super) fn act(&mut self, action: Action, snapshot: &Snapshot) -> Vec<Reaction> {
         if let Some(reason) = refusal(action, snapshot) {
-            let name = action.entry().map_or("", |entry| entry.name);
+            let name = action.entry().map_or("", |entry| if entry.short.is_empty() { entry.text } else { entry.short });
             self.complain(format!("{name}: {reason}"));
             return Vec::new();
         }
@@ -46,10 +51,14 @@ impl App {
             Action::Note => self.open(Dialog::Text { purpose: TextPurpose::Note, typed: String::new() }),
             Action::Settings => self.open(Dialog::Settings { selected: 0 }),
             Action::StrategyList => self.open(strategy_list(snapshot)),
-            Action::Profile => self.open(names("Profile", &snapshot.choices.profiles, Command::SelectProfile)),
-            Action::Garment => self.open(names("Garment", &snapshot.choices.garments, Command::SelectGarment)),
-            Action::FirstArm => self.open(sides("Which arm first", Command::SelectFirstArm)),
-            Action::RecordMovement => self.open(sides("Record the movement of which arm", |side| {
+            Action::Profile => {
+                self.open(names("Profile", &snapshot.choices.profiles, &snapshot.trial.profile, Command::SelectProfile))
+            }
+            Action::Garment => {
+                self.open(names("Garment", &snapshot.choices.garments, &snapshot.trial.garment, Command::SelectGarment))
+            }
+            Action::FirstArm => self.open(sides("Which arm first", snapshot.trial.first_arm, Command::SelectFirstArm)),
+            Action::RecordMovement => self.open(sides("Record the movement of which arm", None, |side| {
                 Command::RecordMovement { side, seconds: MOVEMENT_SECONDS }
             })),
             Action::ReplayStep => vec![Reaction::Replay(ReplayRequest::Step)],
@@ -110,7 +119,7 @@ impl App {
             self.complain("no setting can be changed now");
             return Vec::new();
         };
-        let value = setting.value + f64::from(steps) * setting.step;
+        let value = rounded(self.newest_value(setting, snapshot.now) + f64::from(steps) * setting.step);
         let (least, most) = setting.limits;
         // A step that is meant to land on a limit may miss it by rounding.
         let slack = setting.step * 1e-6;
@@ -118,11 +127,20 @@ impl App {
             self.complain(format!("{}: {value:.3} is outside {least} to {most} {}", setting.name, setting.unit));
             return Vec::new();
         }
-        self.send(Command::SetSetting { key: setting.key.clone(), value: value.clamp(least, most) }, snapshot)
+        let value = value.clamp(least, most);
+        self.asked_setting = Some(AskedSetting { key: setting.key.clone(), value, at: snapshot.now });
+        self.send(Command::SetSetting { key: setting.key.clone(), value }, snapshot)
+    }
+
+    /// A setting's value, or the one that has just been asked for: keys come faster than answers.
+    fn newest_value(&self, setting: &SettingView, now: Stamp) -> f64 {
+        let asked = self.asked_setting.as_ref().filter(|asked| asked.key == setting.key);
+        asked.filter(|asked| now.distance(asked.at) < ANSWER_PATIENCE).map_or(setting.value, |asked| asked.value)
     }
 
     pub(super) fn undo_setting(&mut self, row: usize, snapshot: &Snapshot) -> Vec<Reaction> {
         let row = row.min(snapshot.settings.len().saturating_sub(1));
+        self.asked_setting = None;
         match snapshot.settings.get(row) {
             Some(setting) if setting.previous.is_some() => {
                 self.send(Command::UndoSetting { key: setting.key.clone() }, snapshot)
@@ -134,6 +152,11 @@ impl App {
             None => Vec::new(),
         }
     }
+}
+
+/// To a millionth, far below the step of every setting: sums of steps such as 0.03 - 0.005 miss a number of few digits.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
 }
 
 const ABORT_MOVES: &str = "nothing moves: the arms hold where they are";
@@ -199,15 +222,27 @@ fn strategy_list(snapshot: &Snapshot) -> Dialog {
     Dialog::Choice { title: "Strategy".into(), items: offered.iter().copied().map(item).collect(), selected: 0 }
 }
 
-fn names(title: &str, names: &[String], command: impl Fn(String) -> Command) -> Dialog {
-    let item =
-        |name: &String| ChoiceItem { name: name.clone(), note: String::new(), command: Some(command(name.clone())) };
-    Dialog::Choice { title: title.into(), items: names.iter().map(item).collect(), selected: 0 }
+/// A list in which the name that holds now has the focus and says so.
+fn names(title: &str, names: &[String], now: &str, command: impl Fn(String) -> Command) -> Dialog {
+    let item = |name: &String| ChoiceItem {
+        name: name.clone(),
+        note: if name == now { NOW.into() } else { String::new() },
+        command: Some(command(name.clone())),
+    };
+    let selected = names.iter().position(|name| name == now).unwrap_or_default();
+    Dialog::Choice { title: title.into(), items: names.iter().map(item).collect(), selected }
 }
 
-fn sides(title: &str, command: impl Fn(Side) -> Command) -> Dialog {
-    let item =
-        |side: Side| ChoiceItem { name: format!("{side} arm"), note: String::new(), command: Some(command(side)) };
-    let items = [Side::Right, Side::Left].map(item).to_vec();
-    Dialog::Choice { title: title.into(), items, selected: 0 }
+fn sides(title: &str, now: Option<Side>, command: impl Fn(Side) -> Command) -> Dialog {
+    const ORDER: [Side; 2] = [Side::Right, Side::Left];
+    let item = |side: Side| ChoiceItem {
+        name: format!("{side} arm"),
+        note: if now == Some(side) { NOW.into() } else { String::new() },
+        command: Some(command(side)),
+    };
+    let selected = ORDER.iter().position(|side| now == Some(*side)).unwrap_or_default();
+    Dialog::Choice { title: title.into(), items: ORDER.map(item).to_vec(), selected }
 }
+
+/// What stands beside the choice that holds.
+const NOW: &str = "now";

@@ -114,7 +114,7 @@ impl App {
         if self.stop_key_pressed && snapshot.stop.latched { ExitReason::QuitAfterStop } else { ExitReason::Quit }
     }
 
-    fn scroll(&mut self, action: Action, snapshot: &Snapshot) {
+    pub(super) fn scroll(&mut self, action: Action, snapshot: &Snapshot) {
         let last = self.row_count(snapshot).saturating_sub(1);
         if self.view.screen == Screen::Log && self.view.follow {
             self.view.row = last;
@@ -131,7 +131,7 @@ impl App {
         }
     }
 
-    pub(super) fn scroll_up(&mut self, rows: usize) {
+    fn scroll_up(&mut self, rows: usize) {
         self.view.row = self.view.row.saturating_sub(rows);
         self.view.follow = false;
     }

@@ -111,7 +111,8 @@ pub(super) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) -> u16 {
         let text = if scene.live.stop.is_reset {
             format!("{} · {} · {key}: STOP · red button {red}", state.word, state.headline)
         } else if area.width < 70 {
-            format!("{} · {key}: STOP · red button {red}", state.word)
+            // In forty columns the button's state must not be cut off: its name alone could be taken for "pressed".
+            format!("{} · {key}: STOP · button {red}", state.word)
         } else if area.width < 100 {
             format!("{} · {key}: EMERGENCY STOP (software) · red button: {red}", state.word)
         } else {

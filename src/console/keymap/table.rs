@@ -150,7 +150,7 @@ actions! {
     FinishAfterThis "finish" ["I"], TRIAL, None, "finish", "Finish the arm after this iteration";
     Withdraw "withdraw" ["W"], ALL, Asks, "withdraw", "Withdraw the garment along the travelled path";
     Abort "abort" ["A"], ALL, Asks, "abort", "Give the trial up; the arms hold where they are";
-    Start "start" ["S"], TRIAL, Asks, "start", "Start a trial, or take it up again";
+    Start "start" ["S"], ALL, Asks, "start", "Start a trial, or take it up again";
     Reset "reset" ["R"], ALL, TypedWord, "reset", "Clear the stop: moves nothing, the robot stays disabled";
     Enable "enable" ["E"], ALL, Asks, "enable", "Switch the robot's motors on";
     Disable "disable" ["D"], ALL, Asks, "", "Switch the robot's motors off: the arms may sink";

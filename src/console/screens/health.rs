@@ -1,6 +1,6 @@
 //! Whether everything lives: the check-list, master, robot, red button, recorder and disk, and every topic, worst first.
 
-use crate::console::draw::{Scene, button, robot_words, verdict_word};
+use crate::console::draw::{Scene, button, check_word, robot_words, verdict_word};
 use crate::console::theme::Role;
 use crate::console::widgets::text::{age, bytes, fill, line, seconds, span, title};
 use crate::snapshot::{TopicHealth, Verdict};
@@ -41,7 +41,7 @@ pub(super) fn check_lines<'a>(scene: &Scene<'a>) -> Vec<Line<'a>> {
             format!(" {} {}", look.glyphs().arrow, check.hint)
         };
         Line::from(vec![
-            span(look, role, format!("{symbol} {:<6}", verdict_word(check.verdict))),
+            span(look, role, format!("{symbol} {:<6}", check_word(check.verdict))),
             span(look, Role::Text, format!("{:<20} {}{age}", check.name, check.value)),
             span(look, Role::Late, hint),
         ])

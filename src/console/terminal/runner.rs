@@ -134,7 +134,10 @@ impl<'a> Runner<'a> {
         self.dirty = true;
         let reactions = match event {
             Event::Key(key) => self.app.on_key(key, &self.snapshot),
-            Event::Mouse(mouse) => self.app.on_mouse(mouse),
+            Event::Mouse(mouse) => {
+                self.app.on_mouse(mouse, &self.snapshot);
+                Vec::new()
+            }
             Event::Resize(columns, rows) => {
                 self.app.on_resize(columns, rows);
                 self.drawn = None;

@@ -122,9 +122,9 @@ fn live_through(happenings: &[Happening], phase: TrialPhase) -> Vec<Reaction> {
             Happening::Key(text) => reactions.extend(app.on_key(key(text), &snapshot)),
             Happening::Resize(columns, rows) => app.on_resize(*columns, *rows),
             Happening::Click(column, row) => {
-                reactions.extend(app.on_mouse(mouse(MouseEventKind::Down(MouseButton::Left), *column, *row)));
+                app.on_mouse(mouse(MouseEventKind::Down(MouseButton::Left), *column, *row), &snapshot);
             }
-            Happening::Scroll => reactions.extend(app.on_mouse(mouse(MouseEventKind::ScrollDown, 0, 0))),
+            Happening::Scroll => app.on_mouse(mouse(MouseEventKind::ScrollDown, 0, 0), &snapshot),
             Happening::Snapshot(situation) => {
                 snapshot = fixture_of(*situation);
                 snapshot.trial.phase = phase;

@@ -25,8 +25,8 @@ pub fn compare(trials: &[TrialRecord], folder: &Path) -> Result<PathBuf, PlotErr
         "strategy",
         "seed",
         "iterations",
-        "first energy (N)",
-        "last energy (N)",
+        "first energy, both arms (N)",
+        "last energy, both arms (N)",
         "duration (s)",
         "outcome",
     ];
@@ -65,15 +65,15 @@ fn sketches(trials: &[TrialRecord]) -> Vec<Sketch> {
 }
 
 fn trial_row(trial: &TrialRecord) -> Vec<String> {
-    let energy = |pass: Option<&Iteration>| pass.map_or(NOTHING.into(), |pass| format!("{:.2}", pass.summary.energy));
+    let newtons = |energy: Option<f64>| energy.map_or(NOTHING.into(), |energy| format!("{energy:.2}"));
     vec![
         trial.name.clone(),
         trial.header.profile.clone(),
         trial.strategy().map_or(NOTHING.into(), |strategy| strategy.to_string()),
         trial.header.seed.to_string(),
         trial.iterations.len().to_string(),
-        energy(trial.iterations.first()),
-        energy(trial.iterations.last()),
+        newtons(energy(trial, |mut passes| passes.next())),
+        newtons(energy(trial, Iterator::last)),
         format!("{:.1}", trial.seconds),
         trial.end.as_ref().map_or("not ended".into(), |(outcome, _)| outcome.words().to_owned()),
     ]

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// The rate at which diagnostics are usually published.
 const PERIOD: Duration = Duration::from_secs(1);
 /// How often the thread looks whether it is to end.
-const NAP: Duration = Duration::from_millis(50);
+const NAP: Duration = Duration::from_millis(200);
 
 /// Starts the thread; it ends soon after `ended` is set.
 pub(super) fn start(

@@ -53,13 +53,12 @@ impl Showing {
         }
         *last = Some(snapshot.now);
         drop(last);
-        // What cannot be shown is not missed by the trial: the next one comes in a tenth of a second.
-        let _ = self.state.send(encode::state(snapshot));
+        tell(&self.state, || encode::state(snapshot));
         for (side, view) in snapshot.sides.iter() {
-            let _ = self.force.get(side).send(encode::force(snapshot, side, view));
-            let _ = self.path.get(side).send(encode::path(snapshot.now, &view.path.updated));
+            tell(self.force.get(side), || encode::force(snapshot, side, view));
+            tell(self.path.get(side), || encode::path(snapshot.now, &view.path.updated));
         }
-        let _ = self.markers.send(encode::markers::all(snapshot));
+        tell(&self.markers, || encode::markers::all(snapshot));
         if self.snapshots.subscriber_count() > 0 {
             let mut whole = snapshot.shortened();
             complete(&mut whole);
@@ -70,7 +69,15 @@ impl Showing {
     }
 
     pub(super) fn diagnose(&self, message: &diagnostic_msgs::DiagnosticArray) {
-        let _ = self.diagnostics.send(message.clone());
+        tell(&self.diagnostics, || message.clone());
+    }
+}
+
+/// Publishes a message where anybody listens: making and queueing one for nobody is what an idle node would mostly do.
+fn tell<T: Message>(publisher: &Publisher<T>, message: impl FnOnce() -> T) {
+    if publisher.subscriber_count() > 0 {
+        // What cannot be shown is not missed by the trial: the next one comes in a tenth of a second.
+        let _ = publisher.send(message());
     }
 }
 

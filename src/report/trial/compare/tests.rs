@@ -79,3 +79,14 @@ fn a_strategy_that_was_not_run_has_no_column() {
     let html = std::fs::read_to_string(compare(&trials, folder.path()).unwrap()).unwrap();
     assert!(!html.contains(">multimodal<"));
 }
+
+#[test]
+fn first_and_last_energy_of_a_trial_are_those_of_both_arms() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut both = trial(folder.path(), StrategyKind::Force, [20.25, 10.5]);
+    let other = trial(folder.path(), StrategyKind::Force, [7.25, 1.0]);
+    let left = other.iterations.into_iter().map(|pass| Iteration { side: Side::Left, ..pass });
+    both.iterations.extend(left);
+    let row = trial_row(&both);
+    assert_eq!(row[5..7], ["27.50".to_owned(), "11.50".to_owned()], "{row:?}");
+}
