@@ -15,6 +15,7 @@ mod movement;
 mod operator;
 mod planner;
 mod protection;
+mod retries;
 mod running;
 mod settings;
 mod sign_check;
@@ -92,6 +93,7 @@ pub struct Supervisor {
     yielding: Option<Yielding>,
     contact_since: Option<Stamp>,
     pass_began: Option<Stamp>,
+    retries: retries::Retries,
     last_tick: Option<Stamp>,
     body: Option<BodyPose>,
     questions: planner::Questions,
@@ -127,6 +129,7 @@ impl Supervisor {
             yielding: None,
             contact_since: None,
             pass_began: None,
+            retries: retries::Retries::default(),
             last_tick: None,
             body: None,
             questions: planner::Questions::default(),
@@ -177,7 +180,9 @@ impl Supervisor {
         let in_trial = self.mode != Mode::Idle;
         let inputs = self.protection.judge(now, in_trial);
         let force = if in_trial { self.protection.judge_force() } else { Verdict::clear() };
-        self.obey_verdict(now, &inputs.stricter(self.tempered(now, force)));
+        let force = self.tempered(now, force);
+        self.count_retries(&inputs, &force);
+        self.obey_verdict(now, &inputs.stricter(force));
         self.follow_switch(now);
         self.follow_movement(now);
         self.await_start(now);
@@ -198,11 +203,21 @@ impl Supervisor {
         if easing && force.reaction == Reaction::Hold { Verdict { reaction: Reaction::Slow, ..force } } else { force }
     }
 
+    /// A pass that force holds or stops: the operator may take it up again a few times only. A retreat is none of them.
+    fn count_retries(&mut self, inputs: &Verdict, force: &Verdict) {
+        let holds = force.reaction >= Reaction::Hold && force.reaction >= inputs.reaction;
+        if holds && self.mode == Mode::Running && !self.protection.retreats() {
+            self.retries.held_for_force();
+        }
+    }
+
     fn obey_verdict(&mut self, now: Stamp, verdict: &Verdict) {
         match verdict.reaction {
-            Reaction::Clear | Reaction::Advise if self.protection.retreats() => self.drive.set_ratio(SLOW_RATIO),
-            Reaction::Clear | Reaction::Advise => self.drive.set_ratio(1.0),
-            Reaction::Slow => self.drive.set_ratio(SLOW_RATIO),
+            Reaction::Clear | Reaction::Advise | Reaction::Slow if self.protection.retreats() => {
+                self.drive.set_ratio(SLOW_RATIO);
+            }
+            Reaction::Clear | Reaction::Advise => self.drive.set_ratio(self.retries.ratio()),
+            Reaction::Slow => self.drive.set_ratio(self.retries.ratio().min(SLOW_RATIO)),
             Reaction::Hold => self.hold(now, &verdict.cause),
             Reaction::Stop => self.stop(now, &verdict.cause, Outcome::SafetyStop),
         }
@@ -294,6 +309,7 @@ impl Supervisor {
     fn stop_for_force(&mut self, now: Stamp) {
         let force = self.protection.judge_force();
         if self.mode != Mode::Idle && force.reaction == Reaction::Stop {
+            self.count_retries(&Verdict::clear(), &force);
             self.stop(now, &force.cause, Outcome::SafetyStop);
         }
     }

@@ -87,14 +87,14 @@ impl Supervisor {
         if self.mode != Mode::Held {
             return Err("nothing is held".into());
         }
-        if let Err(reason) = self.may_move(now) {
+        if let Err(reason) = self.may_move(now).and_then(|()| self.retries.check()) {
             // What keeps it now may be something else than what held it first.
             self.view.trial.hold_cause.clone_from(&reason);
             return Err(reason);
         }
         self.protection.watchdogs_mut().acknowledge();
         self.mode = Mode::Running;
-        self.log(now, Level::Information, "operator", "the trial goes on".into());
+        self.log(now, Level::Information, "operator", format!("the trial goes on{}", self.retries.words()));
         self.show_continue(now);
         Ok("now".into())
     }
@@ -213,6 +213,7 @@ impl Supervisor {
         };
         self.trial = Some(Trial::new(self.setup.settings.trial.clone(), plan, strategies));
         self.end_movement_for_trial(now);
+        self.retries.pass_begins();
         self.mode = Mode::Running;
         self.protection.watchdogs_mut().acknowledge();
         self.tare_at_rest(now);

@@ -156,6 +156,7 @@ impl Supervisor {
         match event {
             TrialEvent::IterationBegan { side, iteration } => {
                 self.pass_began = Some(now);
+                self.retries.pass_begins();
                 self.log(now, Level::Information, "trial", format!("{side} arm: iteration {iteration} begins"));
                 self.show_iteration_began(now, side, iteration);
             }
@@ -172,6 +173,7 @@ impl Supervisor {
                 self.effects.push(Effect::Iteration { side, strategy, summary, duration_seconds });
             }
             TrialEvent::ArmDressed { side } => {
+                self.retries.pass_begins();
                 self.log(now, Level::Information, "trial", format!("the {side} arm is dressed"));
                 self.tell_learned(side);
             }

@@ -16,6 +16,7 @@ mod hold;
 mod inputs;
 mod limits;
 mod numbers;
+mod retries;
 mod room;
 mod services;
 mod switch;
