@@ -13,7 +13,8 @@ mod trial;
 
 pub use force::{Detection, ForceSample, ForceTier, ForceView, TierMargin, WindowView};
 pub use health::{
-    CheckLine, Freshness, LogLine, MasterView, ReceiptLine, RecorderView, SettingView, TopicHealth, Verdict,
+    CheckLine, DiagnosisView, Freshness, LogLine, MasterView, ReceiptLine, RecorderView, SettingView, TopicHealth,
+    Verdict,
 };
 pub use history::{History, Shared};
 pub use path::{BodyView, EllipseView, PathView, PoseQuality, WaypointRow};
@@ -230,6 +231,9 @@ pub struct Snapshot {
     pub choices: Shared<Choices>,
     /// One row a topic.
     pub topics: Shared<Vec<TopicHealth>>,
+    /// What other nodes say of themselves on `/diagnostics`.
+    #[serde(default)]
+    pub diagnoses: Shared<Vec<DiagnosisView>>,
     /// The check-list before the first trial.
     pub checks: Shared<Vec<CheckLine>>,
     /// The recorder.

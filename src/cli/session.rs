@@ -78,6 +78,7 @@ impl ShellView {
     fn fill_in(&self, snapshot: &mut Snapshot) {
         let topics = self.link.topics();
         snapshot.topics = Shared::new(topics.iter().map(topic_health).collect());
+        snapshot.diagnoses = Shared::new(self.link.diagnoses());
         snapshot.master.uri.clone_from(&self.master);
         self.pose_source.clone_into(&mut snapshot.body.source);
         snapshot.recorder = self.recorder.as_deref().map(recorder_view).unwrap_or_default();

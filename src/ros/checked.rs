@@ -5,7 +5,7 @@
 //! is longer than what came. Nothing is converted here.
 
 use super::decode::AnyAssemblyState;
-use super::message::{baxter_core_msgs, sensor_msgs, std_msgs, tf2_msgs, valet_msgs};
+use super::message::{baxter_core_msgs, diagnostic_msgs, sensor_msgs, std_msgs, tf2_msgs, valet_msgs};
 use rosrust::{Message, RosMsg};
 use std::io;
 
@@ -34,6 +34,7 @@ impl Measured for AnyAssemblyState {}
 impl Measured for baxter_core_msgs::CollisionDetectionState {}
 impl Measured for baxter_core_msgs::DigitalIOState {}
 impl Measured for baxter_core_msgs::EndpointState {}
+impl Measured for diagnostic_msgs::DiagnosticArray {}
 impl Measured for std_msgs::Bool {}
 impl Measured for std_msgs::Empty {}
 impl Measured for std_msgs::Float64 {}

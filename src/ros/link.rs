@@ -4,6 +4,7 @@
 //! done at the start or by the watch. Dropping the link does not unregister from the calling thread's point of view: hand it
 //! to [`super::node::leave`], which gives it a second.
 
+mod diagnoses;
 mod diagnostics;
 mod senses;
 mod services;
@@ -26,6 +27,8 @@ use crate::body::{PerSide, Side};
 use crate::geometry::Pose;
 use crate::kinematics::JointVector;
 use crate::robot::PortError;
+use crate::snapshot::DiagnosisView;
+use diagnoses::Diagnoses;
 use rosrust::{Message, Publisher, Service};
 use senses::{NewestDepth, subscribe};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,6 +64,7 @@ pub struct RobotLink {
     commands: Option<CommandTopics>,
     showing: Showing,
     monitors: Vec<Monitor>,
+    diagnoses: Diagnoses,
     depth: NewestDepth,
     ended: Arc<AtomicBool>,
     _services: Vec<Service>,
@@ -84,8 +88,11 @@ impl RobotLink {
         }
         let showing = Showing::advertise()?;
         let depth = NewestDepth::default();
-        let subscriptions = subscribe(&sink, &depth)?;
+        let mut subscriptions = subscribe(&sink, &depth)?;
         let monitors: Vec<Monitor> = subscriptions.iter().map(|subscription| subscription.monitor.clone()).collect();
+        // No row among the topics: it is kept apart, and a trial needs nothing of it.
+        let diagnoses = Diagnoses::default();
+        subscriptions.push(senses::subscribe_diagnoses(&sink, &diagnoses, node.name())?);
         let services = services::serve(&sink)?;
         let ended = Arc::new(AtomicBool::new(false));
         Watch::new(node.master(), &node.name(), sink, subscriptions)
@@ -94,7 +101,7 @@ impl RobotLink {
             .map_err(|error| RosError::thread("the watch over the ROS master", error))?;
         diagnostics::start(node.name(), showing.clone(), monitors.clone(), Arc::clone(&ended))
             .map_err(|error| RosError::thread("diagnostics", error))?;
-        Ok(Self { node: node.clone(), commands, showing, monitors, depth, ended, _services: services })
+        Ok(Self { node: node.clone(), commands, showing, monitors, diagnoses, depth, ended, _services: services })
     }
 
     /// What the arms and the switch are commanded through, for the thread that carries effects out. `None` in a dry run.
@@ -137,6 +144,12 @@ impl RobotLink {
     /// Shows every depth image to `watcher` from now on. The first watcher stays.
     pub fn watch_depth(&self, watcher: DepthWatcher) {
         let _ = self.depth.watcher.0.set(watcher);
+    }
+
+    /// What other nodes said of themselves on `/diagnostics` within the last minute, by name.
+    #[must_use]
+    pub fn diagnoses(&self) -> Vec<DiagnosisView> {
+        self.diagnoses.all()
     }
 
     /// How the subscribed topics do.

@@ -91,6 +91,31 @@ impl TopicHealth {
     }
 }
 
+/// What another node says of one of its components on `/diagnostics`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DiagnosisView {
+    /// The component's name.
+    pub name: String,
+    /// The level that was told: `Late` is the definition's WARN.
+    pub verdict: Verdict,
+    /// What was told, in words.
+    pub text: String,
+    /// When it came in.
+    pub heard: Stamp,
+}
+
+impl DiagnosisView {
+    /// Seconds after which a word is stale: the usual time-out of ROS's own `diagnostic_aggregator`.
+    const HOLDS_SECONDS: f64 = 5.0;
+
+    /// How the component does at the moment `now`.
+    #[must_use]
+    pub fn verdict(&self, now: Stamp) -> Verdict {
+        let is_old = now.distance(self.heard).as_secs_f64() > Self::HOLDS_SECONDS;
+        if is_old { self.verdict.max(Verdict::Stale) } else { self.verdict }
+    }
+}
+
 /// The ROS master.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MasterView {

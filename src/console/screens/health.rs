@@ -3,7 +3,7 @@
 use crate::console::draw::{Scene, button, check_word, robot_words, verdict_word};
 use crate::console::theme::Role;
 use crate::console::widgets::text::{age, bytes, fill, line, seconds, span, title};
-use crate::snapshot::{TopicHealth, Verdict};
+use crate::snapshot::{DiagnosisView, TopicHealth, Verdict};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -18,15 +18,46 @@ const MUCH_LAG: f64 = 0.1;
 pub(in crate::console) fn draw(scene: &Scene<'_>, area: Rect, buffer: &mut Buffer) {
     let checks = check_lines(scene);
     let count = u16::try_from(checks.len()).unwrap_or(0).min(area.height / 3);
-    let [links, list, topics] = Layout::vertical([
+    let told = diagnosis_lines(scene);
+    let told_count = u16::try_from(told.len()).unwrap_or(u16::MAX).min(area.height / 4);
+    let [links, list, topics, others] = Layout::vertical([
         Constraint::Length(5),
         Constraint::Length(if count == 0 { 0 } else { count + 1 }),
         Constraint::Fill(1),
+        Constraint::Length(told_count),
     ])
     .areas(area);
     fill(buffer, links, link_lines(scene));
     fill(buffer, list, std::iter::once(title(scene.look, "Check-list")).chain(checks));
     fill(buffer, topics, topic_lines(scene, topics.width));
+    fill(buffer, others, told);
+}
+
+/// What other nodes say of themselves on `/diagnostics`: how many are well, and those that are not, the worst first. Nothing
+/// where nobody says anything.
+fn diagnosis_lines<'a>(scene: &Scene<'a>) -> Vec<Line<'a>> {
+    let (live, look) = (scene.live, scene.look);
+    if live.diagnoses.is_empty() {
+        return Vec::new();
+    }
+    let mut unwell: Vec<_> = live.diagnoses.iter().filter(|told| told.verdict(live.now) != Verdict::Good).collect();
+    unwell.sort_by_key(|told| std::cmp::Reverse(told.verdict(live.now)));
+    let all = live.diagnoses.len();
+    let heading = format!("Diagnostics of other nodes: {} of {all} well", all - unwell.len());
+    let row = |told: &'a DiagnosisView| {
+        let verdict = told.verdict(live.now);
+        let (symbol, role) = look.verdict(verdict);
+        let word = if verdict == Verdict::Late { "WARN" } else { verdict_word(verdict) };
+        let age = match verdict {
+            Verdict::Stale => format!(" ({} old)", seconds(live.now.distance(told.heard).as_secs_f64())),
+            _ => String::new(),
+        };
+        Line::from(vec![
+            span(look, role, format!("{symbol} {word:<6}")),
+            span(look, Role::Text, format!("{}: {}{age}", told.name, told.text)),
+        ])
+    };
+    std::iter::once(title(look, heading)).chain(unwell.into_iter().map(row)).collect()
 }
 
 /// The check-list, one line each.

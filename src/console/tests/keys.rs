@@ -113,3 +113,30 @@ fn what_came_of_something_later_than_its_answer_is_seen_on_every_screen() {
     });
     assert!(bottom(&live).contains("sign check: no push was felt"), "{}", bottom(&live));
 }
+
+#[test]
+fn the_health_screen_shows_the_worst_of_what_other_nodes_say_of_themselves() {
+    use crate::snapshot::{DiagnosisView, Verdict};
+    let mut live = fixture(Situation::Live);
+    let shown = |live: &Snapshot| {
+        let view = ViewState { screen: Screen::Health, ..ViewState::default() };
+        text_of(&drawn(live, &view, COLOUR, (120, 40)))
+    };
+    assert!(!shown(&live).contains("Diagnostics of other nodes"));
+    let now = live.now;
+    let said =
+        |name: &str, verdict, text: &str, heard| DiagnosisView { name: name.into(), verdict, text: text.into(), heard };
+    let old = crate::time::Stamp::from_nanoseconds(now.nanoseconds() - 7_000_000_000);
+    live.diagnoses = crate::snapshot::Shared::new(vec![
+        said("camera", Verdict::Late, "few frames", now),
+        said("gripper", Verdict::Good, "calibrated", now),
+        said("left arm", Verdict::Fault, "motor hot", now),
+        said("old driver", Verdict::Good, "fine", old),
+    ]);
+    let screen = shown(&live);
+    let row = |words: &str| screen.lines().position(|row| row.contains(words)).unwrap_or(usize::MAX);
+    let rows = [row("Diagnostics of other nodes: 1 of 4 well"), row("left arm: motor hot"), row("old driver: fine (7")];
+    assert!(rows.is_sorted() && rows[2] < row("camera: few frames"), "{screen}");
+    let warning = screen.lines().find(|row| row.contains("camera:")).unwrap_or_default();
+    assert!(warning.contains("WARN") && row("camera: few frames") < usize::MAX, "{screen}");
+}

@@ -1,10 +1,11 @@
 //! What is listened to: the robot's topics, the camera's and the tracker's, each decoded in the thread that receives it.
 
 use super::RosError;
+use super::diagnoses::{self, Diagnoses};
 use crate::body::Side;
 use crate::ros::decode::{self, AnyAssemblyState, DepthFrame, skeleton::Skeleton};
 use crate::ros::frames::Frames;
-use crate::ros::message::{baxter_core_msgs, sensor_msgs, tf2_msgs};
+use crate::ros::message::{baxter_core_msgs, diagnostic_msgs, sensor_msgs, tf2_msgs};
 use crate::ros::monitor::now;
 use crate::ros::subscription::{Decoded, Sink, Subscription, TopicNeed};
 use crate::supervisor::Input;
@@ -117,6 +118,16 @@ pub(super) fn subscribe(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscrip
     all.push(state.reading(AnyAssemblyState::digests()));
     all.extend(subscribe_camera(sink, depth)?);
     Ok(all)
+}
+
+/// Listens to what other nodes say of themselves.
+pub(super) fn subscribe_diagnoses(sink: &Sink, known: &Diagnoses, own: String) -> Result<Subscription, RosError> {
+    let known = known.clone();
+    let decode = move |message: diagnostic_msgs::DiagnosticArray| {
+        known.take(now(), &own, message);
+        Decoded::Kept
+    };
+    Subscription::new(need(diagnoses::TOPIC, QUEUE, ANY_RATE, false), sink, decode)
 }
 
 fn subscribe_camera(sink: &Sink, depth: &NewestDepth) -> Result<Vec<Subscription>, RosError> {
