@@ -5,7 +5,7 @@
 use thiserror::Error;
 
 /// The largest width or height that is accepted, in pixels.
-const LARGEST_SIDE: usize = 4096;
+pub(super) const LARGEST_SIDE: usize = 4096;
 /// The value that saturated sensors report; it means no reading.
 const SATURATED: u16 = u16::MAX;
 

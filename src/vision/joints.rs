@@ -17,7 +17,7 @@ use super::depth::DepthImage;
 use super::foreground::{self, Facing, Pixel, View, ViewError};
 use super::part::{CLASSES, NONE, OTHER, PARTS, Part, parts_of};
 use super::probe::ProbeImage;
-use super::tree::{Forest, Leaf, NO_VOTE, VOTED, vote_index};
+use super::tree::{Forest, Leaf, NO_VOTE, VOTED, Vote, vote_index};
 use super::walk;
 use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide, Side};
 use crate::geometry::{Point, Pose, Vector};
@@ -243,9 +243,11 @@ impl PoseFinder {
             self.classified.push(Classified { pixel: *pixel, label });
             let depth = f64::from(pixel.depth) / 1000.0;
             let point = camera.point(f64::from(pixel.column), f64::from(pixel.row), depth);
-            let shares = summed.map(|share| share as f32 / full as f32);
-            for leaf in ends(&self.forest, &self.leaves, index) {
-                cast_votes(&mut self.votes, leaf, &shares, &point);
+            let shares = joint_shares(&summed.map(|share| share as f32 / full as f32));
+            let known = self.votes.iter_mut().zip(shares).enumerate().filter(|(_, (_, share))| *share >= LEAST_SHARE);
+            for (joint, (list, share)) in known {
+                let votes = ends(&self.forest, &self.leaves, index).filter_map(|leaf| leaf.votes.get(joint));
+                list.extend(votes.filter_map(|vote| cast_vote(*vote, share, &point)));
             }
         }
         self.certainty = certain as f64 / (full * self.asked.len().max(1)) as f64;
@@ -299,29 +301,35 @@ fn most(shares: &[u32; CLASSES]) -> (u8, u32) {
     (0_u8..).zip(shares).fold((0, 0), |best, (class, share)| if *share > best.1 { (class, *share) } else { best })
 }
 
-/// Adds a leaf's votes to the lists of the joints that its pixel knows about.
-#[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for metres")]
-fn cast_votes(votes: &mut [Vec<VotePoint>; VOTED], leaf: &Leaf, shares: &[f32; CLASSES], point: &Point) {
+/// What a pixel's shares say of each joint: the sum over the joint's parts.
+fn joint_shares(shares: &[f32; CLASSES]) -> [f32; VOTED] {
+    let mut of_joints = [0.0; VOTED];
     for side in Side::BOTH {
         for joint in Joint::ALL {
-            let index = vote_index(side, joint);
-            let (Some(vote), Some(list)) = (leaf.votes.get(index), votes.get_mut(index)) else { continue };
-            let share: f32 = parts_of(joint)
-                .iter()
-                .map(|part: &Part| shares.get(usize::from(part.label(side))).copied().unwrap_or(0.0))
-                .sum();
-            if share < LEAST_SHARE || vote.deviation == NO_VOTE {
-                continue;
+            let parts = parts_of(joint).iter();
+            let share =
+                parts.map(|part: &Part| shares.get(usize::from(part.label(side))).copied().unwrap_or(0.0)).sum();
+            if let Some(slot) = of_joints.get_mut(vote_index(side, joint)) {
+                *slot = share;
             }
-            let deviation = f32::from(vote.deviation) / 1000.0;
-            let [x, y, z] = vote.offset.map(|value| f32::from(value) / 1000.0);
-            let depth = point.z as f32;
-            list.push(VotePoint {
-                place: [point.x as f32 + x, point.y as f32 + y, depth + z],
-                weight: share * depth * depth / (deviation * deviation + VARIANCE_FLOOR),
-            });
         }
     }
+    of_joints
+}
+
+/// A leaf's vote for a joint that its pixel's `share` knows about.
+#[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for metres")]
+fn cast_vote(vote: Vote, share: f32, point: &Point) -> Option<VotePoint> {
+    if vote.deviation == NO_VOTE {
+        return None;
+    }
+    let deviation = f32::from(vote.deviation) / 1000.0;
+    let [x, y, z] = vote.offset.map(|value| f32::from(value) / 1000.0);
+    let depth = point.z as f32;
+    Some(VotePoint {
+        place: [point.x as f32 + x, point.y as f32 + y, depth + z],
+        weight: share * depth * depth / (deviation * deviation + VARIANCE_FLOOR),
+    })
 }
 
 /// An estimate in the camera frame of the image as it came.

@@ -46,10 +46,11 @@ struct Cell {
 pub(super) struct Room {
     cells: Vec<Cell>,
     ahead: BinaryHeap<Reverse<(u32, u32)>>,
+    /// The cells with foreground; once ways are known, the shorter first.
     order: Vec<u32>,
 }
 
-const EMPTY: Cell = Cell { place: [0.0; 3], way: f32::INFINITY, end: 0.0, root: 0.0, done: false };
+const EMPTY: Cell = Cell { place: [0.0, 0.0, f32::INFINITY], way: f32::INFINITY, end: 0.0, root: 0.0, done: false };
 
 impl ProbeImage {
     /// Fills the maps from the image's foreground pixels; `camera` and `neck` are the image's own.
@@ -60,8 +61,13 @@ impl ProbeImage {
         room.walk(columns);
         room.end(columns);
         for (map, of) in MAPPED.iter().enumerate() {
-            for (value, cell) in self.map_mut(map).iter_mut().zip(&room.cells) {
-                *value = if cell.way.is_finite() { to_millimetres(of(cell)) } else { BACKGROUND };
+            let values = self.map_mut(map);
+            values.fill(BACKGROUND);
+            for index in &room.order {
+                let at = *index as usize;
+                if let (Some(value), Some(cell)) = (values.get_mut(at), room.cells.get(at)) {
+                    *value = to_millimetres(of(cell));
+                }
             }
         }
         self.room = room;
@@ -87,26 +93,43 @@ impl Room {
     /// Each cell's nearest point from the neck, and the ways that begin there.
     #[expect(clippy::cast_possible_truncation, reason = "single precision is plenty for millimetres")]
     fn place(&mut self, pixels: &[Pixel], columns: usize, rows: usize, camera: &Intrinsics, neck: &Point) {
-        self.cells.clear();
-        self.cells.resize(columns * rows, EMPTY);
-        self.ahead.clear();
+        self.empty(columns * rows);
         let neck = neck.map(|metres| metres * 1000.0);
         let deep = |pixel: &Pixel| f32::from(pixel.depth) - neck.z as f32;
         for pixel in pixels {
             let index = cell_of(*pixel, columns);
-            let Some(cell) = self.cells.get_mut(index) else { continue };
-            if cell.way.is_finite() && cell.place[2] <= deep(pixel) {
-                continue;
+            let Some(cell) = self.cells.get_mut(index).filter(|cell| cell.place[2] > deep(pixel)) else { continue };
+            if cell.place[2].is_infinite() {
+                self.order.push(index as u32);
             }
             let point = camera.point(f64::from(pixel.column), f64::from(pixel.row), f64::from(pixel.depth));
             cell.place = [(point.x - neck.x) as f32, (point.y - neck.y) as f32, (point.z - neck.z) as f32];
+        }
+        for index in &self.order {
+            let Some(cell) = self.cells.get_mut(*index as usize) else { continue };
             let straight = cell.place.iter().map(|value| value * value).sum::<f32>().sqrt();
             cell.way = if straight < TRUNK { straight } else { straight + ISLAND };
             cell.root = cell.place[0];
         }
-        for (index, cell) in (0_u32..).zip(&self.cells).filter(|(_, cell)| cell.way.is_finite()) {
-            self.ahead.push(Reverse((u32::from(to_millimetres(cell.way)), index)));
+        let cells = &self.cells;
+        let way = |index: &u32| cells.get(*index as usize).map(|cell| u32::from(to_millimetres(cell.way)));
+        self.ahead.extend(self.order.iter().filter_map(|index| Some(Reverse((way(index)?, *index)))));
+    }
+
+    /// Empties the cells: only those that the last image filled, where there are as many.
+    fn empty(&mut self, count: usize) {
+        self.ahead.clear();
+        if self.cells.len() == count {
+            for index in &self.order {
+                if let Some(cell) = self.cells.get_mut(*index as usize) {
+                    *cell = EMPTY;
+                }
+            }
+        } else {
+            self.cells.clear();
+            self.cells.resize(count, EMPTY);
         }
+        self.order.clear();
     }
 
     /// The shortest ways (Dijkstra) from cell to neighbouring cell.

@@ -123,6 +123,12 @@ impl ProbeImage {
         &self.values
     }
 
+    /// A row's depths without the border.
+    pub(super) fn row_mut(&mut self, row: usize) -> &mut [u16] {
+        let start = (row + 1) * self.stride() + 1;
+        self.values.get_mut(start..start + self.width).unwrap_or(&mut [])
+    }
+
     /// Makes a pixel foreground with a depth in millimetres; does nothing outside the image.
     pub fn set(&mut self, column: usize, row: usize, depth: u16) {
         if column < self.width {
@@ -210,9 +216,10 @@ impl ProbeImage {
     #[inline]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the image and its border")]
     fn read(&self, plane: Plane, column: f32, row: f32) -> u16 {
-        // Shifted by the border first: what is not negative is cut to a whole number by the cast alone, and cheaply.
-        let column = (column + 1.0).clamp(0.0, (self.width + 1) as f32) as usize >> plane.shift;
-        let row = (row + 1.0).clamp(0.0, (self.height + 1) as f32) as usize >> plane.shift;
+        // Shifted by the border first: what is not negative is cut to a whole number by the cast alone. A cast to 16 bits saturates
+        // at no cost, and no side of an image needs more.
+        let column = usize::from((column + 1.0) as u16).min(self.width + 1) >> plane.shift;
+        let row = usize::from((row + 1.0) as u16).min(self.height + 1) >> plane.shift;
         self.values.get(row * plane.stride + column + plane.first).copied().unwrap_or(BACKGROUND)
     }
 
@@ -222,11 +229,29 @@ impl ProbeImage {
     #[must_use]
     #[inline]
     pub fn response(&self, (column, row): (f32, f32), per_metre: f32, feature: &Feature) -> i32 {
-        let [u_x, u_y, v_x, v_y] = feature.offsets;
-        let [first, second] = feature.planes.map(|plane| self.plane(plane));
+        let planes = feature.planes.map(|plane| self.plane(plane));
+        self.difference((column, row), per_metre, &feature.offsets, planes)
+    }
+
+    /// [`ProbeImage::response`] where it is known already how planes stand.
+    #[inline]
+    pub(super) fn difference(
+        &self,
+        (column, row): (f32, f32),
+        per_metre: f32,
+        [u_x, u_y, v_x, v_y]: &Offsets,
+        [first, second]: [Plane; 2],
+    ) -> i32 {
         let first = self.read(first, column + u_x * per_metre + 0.5, row + u_y * per_metre + 0.5);
         let second = self.read(second, column + v_x * per_metre + 0.5, row + v_y * per_metre + 0.5);
         i32::from(first) - i32::from(second)
+    }
+
+    /// How all planes stand.
+    pub(super) fn planes(&self) -> [Plane; PLANES] {
+        let mut planes = [Plane::default(); PLANES];
+        planes.iter_mut().zip(DEPTH..).for_each(|(slot, plane)| *slot = self.plane(plane));
+        planes
     }
 }
 

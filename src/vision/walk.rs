@@ -6,7 +6,7 @@
 mod vector;
 
 use super::foreground::Pixel;
-use super::probe::ProbeImage;
+use super::probe::{PLANES, Plane, ProbeImage};
 use super::tree::{LEAF, Tree};
 
 /// Pixels that walk side by side without vector instructions.
@@ -41,25 +41,56 @@ pub(super) fn with_vector_instructions<W: Work>(work: W) -> W::Outcome {
 
 /// [`leaves`] without vector instructions; adds to the list.
 pub fn plain_leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f32, into: &mut Vec<u32>) {
+    let planes = image.planes();
     for group in pixels.chunks(SIDE_BY_SIDE) {
-        let mut next = [0_u32; SIDE_BY_SIDE];
-        let mut walking = group.len();
-        while walking > 0 {
-            walking = 0;
-            for (next, pixel) in next.iter_mut().zip(group).filter(|(next, _)| **next & LEAF == 0) {
-                // Loading has checked every index; a leaf of number 0 stands in all the same.
-                let Some(node) = tree.nodes.get(*next as usize).filter(|node| node.next & LEAF == 0) else {
-                    *next = tree.nodes.get(*next as usize).map_or(LEAF, |node| node.next);
-                    continue;
-                };
-                walking += 1;
-                let place = (f32::from(pixel.column), f32::from(pixel.row));
-                let right =
-                    image.response(place, per_metre(*pixel, ratio), &node.feature()) >= i32::from(node.threshold);
-                *next = node.next + u32::from(right);
-            }
+        let mut walkers = [Walker::default(); SIDE_BY_SIDE];
+        for (walker, pixel) in walkers.iter_mut().zip(group) {
+            *walker = Walker {
+                place: (f32::from(pixel.column), f32::from(pixel.row)),
+                per_metre: per_metre(*pixel, ratio),
+                next: 0,
+            };
         }
-        into.extend(next.iter().take(group.len()).map(|next| next & !LEAF));
+        while walkers.iter_mut().fold(false, |walking, walker| walker.step(tree, image, &planes) | walking) {}
+        into.extend(walkers.iter().take(group.len()).map(|walker| walker.next & !LEAF));
+    }
+}
+
+/// A pixel on its way through a tree; one that has ended in a leaf by default.
+#[derive(Clone, Copy, Debug)]
+struct Walker {
+    place: (f32, f32),
+    per_metre: f32,
+    next: u32,
+}
+
+impl Default for Walker {
+    fn default() -> Self {
+        Self { place: (0.0, 0.0), per_metre: 0.0, next: LEAF }
+    }
+}
+
+impl Walker {
+    /// One level down; false in a leaf.
+    #[inline]
+    fn step(&mut self, tree: &Tree, image: &ProbeImage, planes: &[Plane; PLANES]) -> bool {
+        if self.next & LEAF != 0 {
+            return false;
+        }
+        // Loading has checked every index; a leaf of number 0 stands in all the same.
+        let Some(node) = tree.nodes.get(self.next as usize) else {
+            self.next = LEAF;
+            return false;
+        };
+        if node.next & LEAF != 0 {
+            self.next = node.next;
+            return false;
+        }
+        // So are numbers of planes; by default all places are the upper border's, which is background.
+        let stands = node.planes.map(|plane| planes.get(usize::from(plane)).copied().unwrap_or_default());
+        let feature = image.difference(self.place, self.per_metre, &node.feature().offsets, stands);
+        self.next = node.next + u32::from(feature >= i32::from(node.threshold));
+        true
     }
 }
 

@@ -243,10 +243,11 @@ impl Default for Sums {
 }
 
 impl Sums {
-    /// What is off, with its gradient at a few numbers.
+    /// What is off, with its gradient at a few numbers in ascending order. Only the lower half of the products is summed:
+    /// nothing else is read.
     fn add<const COUNT: usize>(&mut self, gradient: [(usize, f64); COUNT], off: f64, weight: f64) {
-        for (row, first) in gradient {
-            for (column, second) in gradient {
+        for (count, (row, first)) in (1..).zip(gradient) {
+            for (column, second) in gradient.into_iter().take(count) {
                 if let Some(sum) = self.normal.get_mut((row, column)) {
                     *sum += weight * first * second;
                 }

@@ -1,6 +1,6 @@
 //! Eight pixels in one vector (AVX2), two vectors at a time. The only unsafe code of valet.
 //!
-//! Each level of a tree is six gathers of eight values instead of 48 loads that wait for each other. It reaches the same
+//! Each level of a tree is eight loads of nodes and two gathers instead of 48 loads that wait for each other. It reaches the same
 //! leaves as the plain walk, which a test shows.
 #![expect(unsafe_code, reason = "gathers read through pointers; each is bounded where it is made")]
 
@@ -9,17 +9,18 @@ use crate::vision::foreground::Pixel;
 use crate::vision::probe::{PLANES, Plane, ProbeImage};
 use crate::vision::tree::{LEAF, Node, OFFSET_UNIT, Tree};
 use std::arch::x86_64::{
-    __m256, __m256i, _mm256_add_epi32, _mm256_add_ps, _mm256_and_si256, _mm256_blendv_epi8, _mm256_castsi256_ps,
-    _mm256_cmpgt_epi32, _mm256_cvtepi32_ps, _mm256_cvttps_epi32, _mm256_i32gather_epi32, _mm256_loadu_ps,
-    _mm256_loadu_si256, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
-    _mm256_mullo_epi32, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps,
-    _mm256_setzero_si256, _mm256_slli_epi32, _mm256_srai_epi32, _mm256_srli_epi32, _mm256_srlv_epi32,
-    _mm256_storeu_si256, _mm256_sub_epi32,
+    __m128i, __m256, __m256i, _MM_HINT_T0, _mm_loadu_si128, _mm_prefetch, _mm256_add_epi32, _mm256_add_ps,
+    _mm256_and_si256, _mm256_blendv_epi8, _mm256_castsi256_ps, _mm256_cmpgt_epi32, _mm256_cvtepi32_ps,
+    _mm256_cvttps_epi32, _mm256_i32gather_epi32, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_ps, _mm256_min_epu32,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_mullo_epi32, _mm256_permutevar8x32_epi32,
+    _mm256_set_m128i, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps, _mm256_setzero_si256, _mm256_slli_epi32,
+    _mm256_srai_epi32, _mm256_srli_epi32, _mm256_srlv_epi32, _mm256_storeu_si256, _mm256_sub_epi32,
+    _mm256_unpackhi_epi32, _mm256_unpackhi_epi64, _mm256_unpacklo_epi32, _mm256_unpacklo_epi64,
 };
 
 /// Lanes of a vector, and vectors that walk side by side.
 const LANES: usize = 8;
-const VECTORS: usize = 2;
+const VECTORS: usize = 4;
 /// Pixels of one go.
 const GROUP: usize = LANES * VECTORS;
 const _: () = assert!(PLANES == LANES);
@@ -27,7 +28,7 @@ const _: () = assert!(PLANES == LANES);
 /// Adds the leaves of as many pixels as make whole groups; tells how many that were. None without AVX2.
 pub(super) fn leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f32, into: &mut Vec<u32>) -> usize {
     // Indices are signed 32-bit numbers of words.
-    let fits = i32::try_from(tree.nodes.len() * 4).is_ok() && i32::try_from(image.values().len()).is_ok();
+    let fits = i32::try_from(tree.nodes.len()).is_ok() && i32::try_from(image.values().len()).is_ok();
     // All planes and one value more: what the clamped coordinates reach.
     let whole = image.values().len() == image.value_count();
     if tree.nodes.is_empty() || !fits || !whole || !std::arch::is_x86_feature_detected!("avx2") {
@@ -69,7 +70,7 @@ struct Walkers {
 /// What is the same for all pixels of an image.
 #[derive(Clone, Copy)]
 struct Ground {
-    nodes: *const i32,
+    nodes: *const __m128i,
     last_node: __m256i,
     values: *const i32,
     last_column: __m256,
@@ -152,18 +153,10 @@ fn start(pixels: &[Pixel; LANES], ratio: f32) -> Walkers {
 #[inline]
 unsafe fn step(walkers: &mut Walkers, ground: &Ground) -> bool {
     // No index leaves the tree, whatever a node says.
-    let word = _mm256_slli_epi32::<2>(_mm256_min_epu32(walkers.node, ground.last_node));
-    let one = _mm256_set1_epi32(1);
-    let (second, third) = (_mm256_add_epi32(word, one), _mm256_add_epi32(word, _mm256_set1_epi32(2)));
-    // SAFETY: a node is four words (checked beside its definition), and `word` is the first one of a node.
-    let (u, v, test, next) = unsafe {
-        (
-            _mm256_i32gather_epi32::<4>(ground.nodes, word),
-            _mm256_i32gather_epi32::<4>(ground.nodes, second),
-            _mm256_i32gather_epi32::<4>(ground.nodes, third),
-            _mm256_i32gather_epi32::<4>(ground.nodes, _mm256_add_epi32(third, one)),
-        )
-    };
+    let at = _mm256_min_epu32(walkers.node, ground.last_node);
+    // SAFETY: `at` lies inside the tree.
+    let [u, v, test, next] = unsafe { nodes(ground.nodes, at) };
+    fetch(ground.nodes, _mm256_min_epu32(next, ground.last_node));
     // SAFETY: as for this function.
     let response = unsafe {
         let first = probe(walkers, ground, u, _mm256_srli_epi32::<16>(test));
@@ -173,10 +166,50 @@ unsafe fn step(walkers: &mut Walkers, ground: &Ground) -> bool {
     // Minus one where the feature is below the threshold: the way goes left.
     let left = _mm256_cmpgt_epi32(threshold, response);
     let ended = _mm256_srai_epi32::<31>(next);
-    let child = _mm256_add_epi32(_mm256_add_epi32(next, one), left);
+    let child = _mm256_add_epi32(_mm256_add_epi32(next, _mm256_set1_epi32(1)), left);
     walkers.node = _mm256_blendv_epi8(child, walkers.node, ended);
     walkers.next = next;
     _mm256_movemask_ps(_mm256_castsi256_ps(ended)) == 0xFF
+}
+
+/// The four words of eight nodes: eight loads of whole nodes, turned, which processors do in less than half of the time of four
+/// gathers.
+///
+/// # Safety
+/// The machine must have AVX2; every number in `at` must be a node's.
+#[target_feature(enable = "avx2")]
+#[inline]
+unsafe fn nodes(first: *const __m128i, at: __m256i) -> [__m256i; 4] {
+    let mut numbers = [0_u32; LANES];
+    // SAFETY: `numbers` is eight words, which need no alignment.
+    unsafe { _mm256_storeu_si256(numbers.as_mut_ptr().cast(), at) };
+    let [a, b, c, d, e, f, g, h] = numbers;
+    // SAFETY: a node is as long as a vector of four words (checked beside its definition), and each number is a node's.
+    let pair = |low: u32, high: u32| unsafe {
+        _mm256_set_m128i(_mm_loadu_si128(first.add(high as usize)), _mm_loadu_si128(first.add(low as usize)))
+    };
+    let (one, two, three, four) = (pair(a, e), pair(b, f), pair(c, g), pair(d, h));
+    let (low, high) = (_mm256_unpacklo_epi32(one, two), _mm256_unpackhi_epi32(one, two));
+    let (lower, higher) = (_mm256_unpacklo_epi32(three, four), _mm256_unpackhi_epi32(three, four));
+    [
+        _mm256_unpacklo_epi64(low, lower),
+        _mm256_unpackhi_epi64(low, lower),
+        _mm256_unpacklo_epi64(high, higher),
+        _mm256_unpackhi_epi64(high, higher),
+    ]
+}
+
+/// Asks for eight nodes ahead of their time: both children stand side by side, so what a level needs next is on its way while
+/// probes decide which.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn fetch(first: *const __m128i, at: __m256i) {
+    let mut numbers = [0_u32; LANES];
+    // SAFETY: `numbers` is eight words, which need no alignment.
+    unsafe { _mm256_storeu_si256(numbers.as_mut_ptr().cast(), at) };
+    for number in numbers {
+        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(number as usize).cast());
+    }
 }
 
 /// What planes (the lowest three bits of a word) read at offsets that stand in the halves of a word: column low, row high.
