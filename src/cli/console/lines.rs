@@ -55,6 +55,12 @@ pub(super) fn follow(session: &Session, strategy: StrategyKind, seed: u64, json:
             break;
         }
     }
+    if !session.is_running() {
+        output.line(
+            "told to end by another program (rosnode kill, roslaunch, or a second node of this one's name): a trial that was \
+             led from here holds, and the robot stays enabled",
+        )?;
+    }
     match last.filter(|_| session.is_stopped()) {
         Some(result) => verdict(&result),
         None => Ok(()),
