@@ -1,6 +1,6 @@
 //! Finds the responses of the shipped cohort again: `cargo run --release --example calibrate_cohort -- [PARTICIPANT] [ROUNDS]`.
 //!
-//! Random search round the present profile, judged on trials of the node in virtual time with seeds of their own; prints the best
+//! Random search round the present profile, at times with figures of another person of the cohort, judged on trials of the node in virtual time with seeds of their own; prints the best
 //! as TOML. Needed whenever the simulated garment, the detector, the guard or the strategy changes. Takes about 0.3 s of
 //! processor time a trial, so an hour a person; with 0 ROUNDS it says how well the profile on disk does. Never writes a file.
 
@@ -17,6 +17,9 @@ const FIRST_SEED: u64 = 1_000_000;
 
 /// Trials of a close look. The mean of 60 varies by 0.1 iterations, and the best of many such means is better than its person.
 const CLOSE_SEEDS: u32 = 120;
+
+/// Trials of each cheaper look before, and by how much the cost may be above the best one after so few.
+const LOOKS: [(u32, f64); 4] = [(5, 6.0), (15, 1.5), (40, 0.3), (80, 0.0)];
 
 /// What a trial that did not end with a free pass weighs.
 const UNFINISHED: f64 = 40.0;
@@ -62,16 +65,19 @@ fn on_disk(number: u32) -> Result<SimulatedPerson, String> {
 
 fn search(mut participant: Participant, rounds: u64) -> Result<String, String> {
     participant.person = on_disk(participant.number)?;
+    let others = cohort().map_err(|error| error.to_string())?;
     let mut random = ChaCha8Rng::seed_from_u64(u64::from(participant.number));
     let mut best = (judge(&participant, CLOSE_SEEDS)?, participant.person.clone());
     for round in 0..rounds {
-        let spread = if round % 3 == 0 { 0.35 } else { 0.12 };
-        participant.person = varied(&best.1, &mut random, spread);
-        if participant.person.check().is_err() {
-            continue;
+        let spread = if round % 3 == 1 { 0.35 } else { 0.1 };
+        let mut start = best.1.clone();
+        if round % 2 == 0 {
+            // Other people of the cohort have other ratios of passes to force: what makes them may be taken over.
+            let other = others.get(random.random_range(0..others.len())).ok_or("the cohort is empty")?;
+            cross(&mut start, &other.person, &mut random);
         }
-        // Cheap looks first; only what does clearly better is looked at closely.
-        if judge(&participant, 24)?.cost > best.0.cost * 0.7 || judge(&participant, 60)?.cost > best.0.cost * 0.8 {
+        participant.person = varied(&start, &mut random, spread);
+        if participant.person.check().is_err() || !promising(&participant, best.0.cost)? {
             continue;
         }
         let closely = judge(&participant, CLOSE_SEEDS)?;
@@ -84,6 +90,39 @@ fn search(mut participant: Participant, rounds: u64) -> Result<String, String> {
     }
     participant.person = best.1;
     told(&participant, &best.0)
+}
+
+/// Cheap looks first; only who does well enough for so few trials is looked at closely.
+fn promising(participant: &Participant, best: f64) -> Result<bool, String> {
+    for (seeds, allowance) in LOOKS {
+        if judge(participant, seeds)?.cost > best + allowance {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Goes a part of the way to another person, or takes over some of that one's figures.
+fn cross(person: &mut SimulatedPerson, other: &SimulatedPerson, random: &mut ChaCha8Rng) {
+    let way = random.random_bool(0.7).then(|| random.random_range(0.1..0.9));
+    let mut take = |value: &mut f64, their: f64| match way {
+        Some(way) => *value += (their - *value) * way,
+        None if random.random_bool(0.4) => *value = their,
+        None => {}
+    };
+    let (own, theirs) = (&mut person.right.response, &other.right.response);
+    take(&mut own.free_play_metres, theirs.free_play_metres);
+    take(&mut own.lateral_stiffness_newtons_per_metre, theirs.lateral_stiffness_newtons_per_metre);
+    take(&mut own.jam_stiffness_newtons_per_metre, theirs.jam_stiffness_newtons_per_metre);
+    take(&mut own.reflex_rate_newtons_per_second, theirs.reflex_rate_newtons_per_second);
+    take(&mut own.reaction_seconds, theirs.reaction_seconds);
+    take(&mut own.yield_share, theirs.yield_share);
+    take(&mut own.learn_share, theirs.learn_share);
+    take(&mut own.unfamiliar_factor, theirs.unfamiliar_factor);
+    take(&mut own.path_jitter_metres, theirs.path_jitter_metres);
+    for (value, their) in person.right.preferred_offset_metres.iter_mut().zip(other.right.preferred_offset_metres) {
+        take(value, their);
+    }
 }
 
 /// A person as TOML, under what came of the trials.
@@ -113,13 +152,13 @@ fn varied(person: &SimulatedPerson, random: &mut ChaCha8Rng, spread: f64) -> Sim
     let response = &mut person.right.response;
     vary(&mut response.free_play_metres, 0.01, 0.08);
     vary(&mut response.lateral_stiffness_newtons_per_metre, 150.0, 900.0);
-    vary(&mut response.jam_stiffness_newtons_per_metre, 3.0, 300.0);
+    vary(&mut response.jam_stiffness_newtons_per_metre, 3.0, 500.0);
     vary(&mut response.reflex_rate_newtons_per_second, 40.0, 250.0);
     vary(&mut response.reaction_seconds, 0.09, 0.28);
-    vary(&mut response.yield_share, 0.01, 0.4);
+    vary(&mut response.yield_share, 0.005, 0.6);
     vary(&mut response.learn_share, 0.05, 0.9);
-    vary(&mut response.unfamiliar_factor, 1.0, 2.0);
-    vary(&mut response.path_jitter_metres, 0.002, 0.007);
+    vary(&mut response.unfamiliar_factor, 1.0, 2.5);
+    vary(&mut response.path_jitter_metres, 0.0005, 0.012);
     let mut scale = 1.0;
     vary(&mut scale, 0.5, 2.0);
     for value in &mut person.right.preferred_offset_metres {

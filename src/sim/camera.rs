@@ -9,6 +9,8 @@ mod furniture;
 mod look;
 mod noise;
 mod pose;
+mod ray;
+mod render;
 mod shape;
 
 pub use body::Scene;
@@ -19,9 +21,7 @@ pub use pose::{Motion, Sampled, Subject};
 use super::person::{ArmPoints, SimulatedPerson};
 use crate::body::PerSide;
 use crate::geometry::{Point, Pose, Vector};
-use crate::vision::part::NONE;
 use crate::vision::{DepthImage, Intrinsics};
-use noise::PixelRandom;
 
 /// Size of an Xtion's images in pixels.
 pub const IMAGE_SIZE: (usize, usize) = (640, 480);
@@ -62,54 +62,6 @@ pub fn view(
 ) -> Rendering {
     let scene = Scene::seated(arms, &Look::of(&person.body), mount);
     scene.render(camera, IMAGE_SIZE, Some(&SensorNoise::default()), seed)
-}
-
-impl Scene {
-    /// Renders the scene; without `noise` the depth is true to the millimetre.
-    #[must_use]
-    pub fn render(
-        &self,
-        camera: &Intrinsics,
-        (width, height): (usize, usize),
-        noise: Option<&SensorNoise>,
-        seed: u64,
-    ) -> Rendering {
-        let mut depths = vec![f64::INFINITY; width * height];
-        let mut labels = vec![NONE; width * height];
-        for solid in self.solids() {
-            let window = solid.shape.window(camera, width, height);
-            let shape = solid.shape.prepare();
-            for row in window.rows.0..window.rows.1 {
-                let start = row * width;
-                let span = start + window.columns.0..start + window.columns.1.max(window.columns.0);
-                let (Some(depths), Some(labels)) = (depths.get_mut(span.clone()), labels.get_mut(span)) else {
-                    continue;
-                };
-                let y = (row as f64 - camera.cy) / camera.fy;
-                for ((column, depth), label) in (window.columns.0..).zip(depths).zip(labels) {
-                    let ray = Vector::new((column as f64 - camera.cx) / camera.fx, y, 1.0);
-                    let Some(hit) = shape.hit(&ray) else { continue };
-                    let hit = hit + solid.fold(&(ray * hit));
-                    if hit < *depth {
-                        *depth = hit;
-                        *label = self.label(solid, &Point::from(ray * hit));
-                    }
-                }
-            }
-        }
-        let millimetres = depths.iter().map(|depth| to_millimetres(*depth)).collect();
-        let mut depth = DepthImage::new(width, height, millimetres).unwrap_or_default();
-        if let Some(noise) = noise {
-            noise::apply(&mut depth, camera, noise, &mut PixelRandom(seed));
-        }
-        Rendering { depth, labels }
-    }
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range is checked first")]
-fn to_millimetres(metres: f64) -> u16 {
-    let millimetres = metres * 1000.0 + 0.5;
-    if (1.0..10_000.0).contains(&millimetres) { millimetres as u16 } else { 0 }
 }
 
 #[cfg(test)]

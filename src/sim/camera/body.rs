@@ -33,15 +33,15 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// How far folds push the surface away from the camera at a point, in metres.
-    pub(super) fn fold(&self, point: &Vector) -> f64 {
+    /// How far folds push the surface away from the camera or towards it at the most, in metres.
+    pub(super) const fn fold_height(&self) -> f64 {
+        self.folds.0
+    }
+
+    /// How far folds push the surface away from the camera at a point (its x and y in metres), in metres.
+    pub(super) fn fold(&self, x: f64, y: f64) -> f64 {
         let (height, waves, phase) = self.folds;
-        if height == 0.0 {
-            return 0.0;
-        }
-        height
-            * ((point.x * waves + phase).sin() + (point.y * waves * 0.7 + point.x * waves * 0.4 + 2.0 * phase).sin())
-            * 0.5
+        height * ((x * waves + phase).sin() + (y * waves * 0.7 + x * waves * 0.4 + 2.0 * phase).sin()) * 0.5
     }
 }
 
@@ -149,41 +149,61 @@ impl Scene {
         &self.solids
     }
 
-    /// The true label of a point on a solid's surface.
-    pub(super) fn label(&self, solid: &Solid, point: &Point) -> u8 {
+    /// Tells the true label of points on a solid's surface.
+    pub(super) fn labeller(&self, solid: &Solid) -> Labeller {
         match solid.region {
-            Region::Torso => {
-                let side = if (point - self.middle).dot(&self.left) > 0.0 { Side::Left } else { Side::Right };
-                Part::Shoulder.label(side)
-            }
+            Region::Torso => Labeller::Torso { middle: self.middle, left: self.left },
             Region::UpperArm(side) => {
                 let points = self.arms.get(side);
-                let share = share(&points.shoulder, &points.elbow, point);
-                let part = match share {
-                    share if share < SHOULDER_SHARE => Part::Shoulder,
-                    share if share <= 1.0 => Part::UpperArm,
-                    _ => Part::Forearm,
-                };
-                part.label(side)
+                let part = |part: Part| part.label(side);
+                let labels = [Part::Shoulder, Part::UpperArm, Part::Forearm].map(part);
+                Labeller::along(&points.shoulder, &points.elbow, [SHOULDER_SHARE, 1.0], labels)
             }
             Region::Forearm(side) | Region::Hand(side) => {
                 let points = self.arms.get(side);
-                let part = match share(&points.elbow, &points.wrist, point) {
-                    share if share > 1.0 => Part::Hand,
-                    share if share < 0.0 && solid.region == Region::Forearm(side) => Part::UpperArm,
-                    _ => Part::Forearm,
-                };
-                part.label(side)
+                let before = if solid.region == Region::Forearm(side) { Part::UpperArm } else { Part::Forearm };
+                let labels = [before, Part::Forearm, Part::Hand].map(|part| part.label(side));
+                Labeller::along(&points.elbow, &points.wrist, [0.0, 1.0], labels)
             }
-            Region::Person | Region::Furniture => OTHER,
+            Region::Person | Region::Furniture => Labeller::Same(OTHER),
         }
     }
 }
 
-/// How far along a segment a point lies: 0 at its start, 1 at its end.
-fn share(start: &Point, end: &Point, point: &Point) -> f64 {
-    let along = end - start;
-    (point - start).dot(&along) / along.norm_squared().max(1e-12)
+/// Tells the true label of points on a surface, with everything worked out that is the same for all of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Labeller {
+    /// All the same.
+    Same(u8),
+    /// The shoulder's half of the trunk on the side of the middle.
+    Torso { middle: Point, left: Vector },
+    /// By the share of the way along a limb: up to the first limit, up to the second, beyond.
+    Along { start: Point, along: Vector, square: f64, limits: [f64; 2], labels: [u8; 3] },
+}
+
+impl Labeller {
+    fn along(start: &Point, end: &Point, limits: [f64; 2], labels: [u8; 3]) -> Self {
+        let along = end - start;
+        Self::Along { start: *start, along, square: along.norm_squared().max(1e-12), limits, labels }
+    }
+
+    /// The label of a point in metres in the camera frame.
+    pub(super) fn label(&self, point: &Point) -> u8 {
+        match self {
+            Self::Same(label) => *label,
+            Self::Torso { middle, left } => {
+                let side = if (point - middle).dot(left) > 0.0 { Side::Left } else { Side::Right };
+                Part::Shoulder.label(side)
+            }
+            Self::Along { start, along, square, limits: [first, second], labels: [before, between, beyond] } => {
+                match (point - start).dot(along) / square {
+                    share if share < *first => *before,
+                    share if share <= *second => *between,
+                    _ => *beyond,
+                }
+            }
+        }
+    }
 }
 
 impl Builder<'_> {

@@ -54,10 +54,50 @@ impl PixelRandom {
     }
 }
 
+/// Depths (mm) and disparities (eighths of a pixel) up to here are looked up: an Xtion's range, and more than its nearest.
+const LOOKED_UP_MILLIMETRES: u16 = 10_000;
+const LOOKED_UP_EIGHTHS: u32 = 1_024;
+
+/// Depth to disparity and back, looked up where most readings are: divisions are what the noise of an image takes longest for.
+struct Disparities {
+    /// Focal length in pixels times the baseline in metres.
+    strength: f64,
+    by_millimetres: Vec<f64>,
+    by_eighths: Vec<u16>,
+}
+
+impl Disparities {
+    fn new(strength: f64) -> Self {
+        let by_millimetres = (0..LOOKED_UP_MILLIMETRES).map(|depth| disparity(strength, depth)).collect();
+        let by_eighths = (0..LOOKED_UP_EIGHTHS).map(|eighths| depth(strength, eighths)).collect();
+        Self { strength, by_millimetres, by_eighths }
+    }
+
+    fn disparity(&self, millimetres: u16) -> f64 {
+        let known = self.by_millimetres.get(usize::from(millimetres)).copied();
+        known.unwrap_or_else(|| disparity(self.strength, millimetres))
+    }
+
+    fn depth(&self, eighths: u32) -> u16 {
+        self.by_eighths.get(eighths as usize).copied().unwrap_or_else(|| depth(self.strength, eighths))
+    }
+}
+
+/// The disparity in pixels of a depth in millimetres.
+fn disparity(strength: f64, millimetres: u16) -> f64 {
+    strength / (f64::from(millimetres) / 1000.0)
+}
+
+/// The depth in millimetres of a disparity in eighths of a pixel.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range first")]
+fn depth(strength: f64, eighths: u32) -> u16 {
+    (strength / (f64::from(eighths) / 8.0).max(0.5) * 1000.0 + 0.5).clamp(0.0, 65_534.0) as u16
+}
+
 /// Turns true depth into what the sensor reports.
 pub(super) fn apply(image: &mut DepthImage, camera: &Intrinsics, noise: &SensorNoise, random: &mut PixelRandom) {
     let width = image.width();
-    let strength = camera.fx * noise.baseline_metres;
+    let disparities = Disparities::new(camera.fx * noise.baseline_metres);
     let mut row_truth = vec![0_u16; width];
     for row in image.millimetres_mut().chunks_mut(width) {
         row_truth.copy_from_slice(row);
@@ -65,38 +105,35 @@ pub(super) fn apply(image: &mut DepthImage, camera: &Intrinsics, noise: &SensorN
         let mut horizon = f64::INFINITY;
         for (column, reading) in row.iter_mut().enumerate().rev() {
             let jitter = column.wrapping_add_signed(neighbour(random.next()));
-            let truth = row_truth.get(jitter).copied().filter(|value| *value > 0).unwrap_or(*reading);
             if *reading == 0 {
                 continue;
             }
-            let disparity = strength / (f64::from(truth) / 1000.0);
+            let beside = row_truth.get(jitter).copied().unwrap_or(0);
+            let truth = if beside > 0 { beside } else { *reading };
+            let disparity = disparities.disparity(truth);
             let seen_at = column as f64 - disparity;
             let shadowed = seen_at > horizon + 1.0;
-            horizon = horizon.min(seen_at);
+            horizon = if seen_at < horizon { seen_at } else { horizon };
             *reading = if shadowed || random.uniform() < noise.dropout {
                 0
             } else {
-                measured(disparity, strength, noise, random)
+                measured(disparity, &disparities, noise, random)
             };
         }
     }
 }
 
-/// An edge pixel sometimes reports what its neighbour sees.
-const fn neighbour(bits: u64) -> isize {
-    match bits & 7 {
-        0 => -1,
-        1 => 1,
-        _ => 0,
-    }
+/// An edge pixel sometimes reports what its neighbour sees. Without branches, which nobody can foresee here.
+fn neighbour(bits: u64) -> isize {
+    let drawn = bits & 7;
+    isize::from(drawn == 1) - isize::from(drawn == 0)
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range first")]
-fn measured(disparity: f64, strength: f64, noise: &SensorNoise, random: &mut PixelRandom) -> u16 {
+fn measured(disparity: f64, disparities: &Disparities, noise: &SensorNoise, random: &mut PixelRandom) -> u16 {
     // Cut after a half is added: rounding, which is slow where the processor has no instruction for it.
     let eighths = ((disparity + noise.disparity_deviation * random.normal()) * 8.0 + 0.5).max(0.0) as u32;
-    let noisy = f64::from(eighths) / 8.0;
-    let millimetres = (strength / noisy.max(0.5) * 1000.0 + 0.5).clamp(0.0, 65_534.0) as u16;
+    let millimetres = disparities.depth(eighths);
     if millimetres < noise.nearest_millimetres { 0 } else { millimetres }
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::body::{Joint, Side};
-use crate::vision::part::{OTHER, parts_of};
+use crate::vision::part::{NONE, OTHER, parts_of};
 use crate::vision::{Part, PoseFinder};
 
 fn subject(seed: u64) -> Sampled {
