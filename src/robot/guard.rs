@@ -49,13 +49,16 @@ impl Default for GuardSettings {
 const SHORTEST_STEP: f64 = 0.0005;
 /// Time between two commands that are on time, in seconds.
 const USUAL_STEP: f64 = 0.01;
+/// After a pause the supervisor lets a motion go on by at most this, in seconds (`LONGEST_SPAN` of its own).
+const LONGEST_STEP: f64 = 0.02;
 
 /// A command that was sent.
 #[derive(Clone, Copy, Debug)]
 struct Sent {
     stamp: Stamp,
     joints: JointVector,
-    speed: JointVector,
+    /// The least and the greatest speed that it may stand for, radians a second.
+    speeds: (JointVector, JointVector),
     /// Seconds between this command and the one before.
     step: f64,
 }
@@ -190,21 +193,24 @@ impl<L: Limb> GuardedLimb<L> {
         let most = self.limits.joint_speed * (1.0 + more_speed);
         self.first_beyond(&speed, &most, |joint| Limit::JointSpeed { joint })?;
         // Each speed holds for the middle of its own step.
-        let acceleration = (self.speed_of(previous, joints, step) - previous.speed) / (0.5 * (step + previous.step));
+        let (least, greatest) = self.speeds_of(previous, joints, step);
+        let faster = (least - previous.speeds.1).sup(&JointVector::zeros());
+        let slower = (greatest - previous.speeds.0).inf(&JointVector::zeros());
+        let acceleration = (faster + slower) / (0.5 * (step + previous.step));
         let most = self.limits.joint_acceleration * (1.0 + more_acceleration);
         self.first_beyond(&acceleration, &most, |joint| Limit::JointAcceleration { joint })
     }
 
-    /// The speed that a command asks for. A late one holds a place for which the arm has had the whole pause or only its last
-    /// tick: it counts as the speed between the two that is nearest to the one before, so that a late beat, after which the
-    /// motion goes on as planned, is no braking and no start.
-    fn speed_of(&self, previous: &Sent, joints: &JointVector, step: f64) -> JointVector {
+    /// The least and the greatest speed that a command asks for. After a long pause it holds a place for which the arm has had the
+    /// whole pause or only its last [`LONGEST_STEP`], and may stand for any speed between the two: a late beat, after which the
+    /// motion goes on as planned, is no braking and no start, and neither is the beat after that.
+    fn speeds_of(&self, previous: &Sent, joints: &JointVector, step: f64) -> (JointVector, JointVector) {
         let moved = joints - previous.joints;
-        let (slow, fast) = (moved / step, moved / step.min(USUAL_STEP));
+        let (slow, fast) = (moved / step, moved / step.min(LONGEST_STEP));
         let most = self.limits.joint_speed * (1.0 + self.settings.tolerance.0);
-        let nearest = previous.speed.sup(&slow.inf(&fast)).inf(&slow.sup(&fast));
         // A mean speed beyond the limit is judged by itself.
-        nearest.inf(&most.sup(&slow)).sup(&(-most).inf(&slow))
+        let fast = fast.inf(&most.sup(&slow)).sup(&(-most).inf(&slow));
+        (slow.inf(&fast), slow.sup(&fast))
     }
 
     fn first_beyond(
@@ -252,11 +258,12 @@ impl<L: Limb> Limb for GuardedLimb<L> {
         self.forget_what_lies_ahead(now);
         self.judge(now, joints)?;
         self.inner.command(now, joints)?;
-        let (speed, step) = self.previous(now).map_or((JointVector::zeros(), USUAL_STEP), |previous| {
+        let still = (JointVector::zeros(), JointVector::zeros());
+        let (speeds, step) = self.previous(now).map_or((still, USUAL_STEP), |previous| {
             let step = previous.step_until(now);
-            (self.speed_of(&previous, joints, step), step)
+            (self.speeds_of(&previous, joints, step), step)
         });
-        self.sent = Some(Sent { stamp: now, joints: *joints, speed, step });
+        self.sent = Some(Sent { stamp: now, joints: *joints, speeds, step });
         Ok(())
     }
 

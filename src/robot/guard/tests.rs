@@ -278,4 +278,29 @@ proptest! {
             prop_assert!(MODEL.arm(Side::Right).limits().breach(to, JOINT_TOLERANCE).is_none());
         }
     }
+
+    // A busy computer's beats come early and late; the supervisor lets a motion go on by what has passed, at most two beats'
+    // worth. At the planned acceleration nothing of it may be refused.
+    #[test]
+    fn a_planned_motion_passes_however_its_beats_come(
+        beats in proptest::collection::vec(5_000..60_000_u64, 1..200),
+        hertz in 0.3..1.0_f64,
+    ) {
+        let turn = std::f64::consts::TAU * hertz;
+        let limits = MotionLimits::default();
+        let amplitude = limits.joint_acceleration[2] / (turn * turn);
+        let amplitude = amplitude.min(0.9 * limits.joint_speed[2] / turn).min(0.3);
+        let mut limb = guarded();
+        let (mut now, mut passed) = (Stamp::from_nanoseconds(1_000_000_000), 0.0);
+        limb.command(now, &JointVector::from(HOME)).unwrap();
+        for beat in beats {
+            now = now + Duration::from_micros(beat);
+            passed += Duration::from_micros(beat.min(20_000)).as_secs_f64();
+            let mut joints = JointVector::from(HOME);
+            joints[2] += amplitude * (1.0 - (turn * passed).cos());
+            limb.observe(now, &<[f64; 7]>::from(joints).map(Some));
+            let sent = limb.command(now, &joints);
+            prop_assert!(sent.is_ok(), "after {passed} s: {}", sent.unwrap_err());
+        }
+    }
 }
