@@ -232,3 +232,23 @@ fn s_33_messages_that_were_kept_back_and_come_in_a_burst_do_not_count_as_fresh()
     assert!(!room.ask(Command::Continue).is_accepted(), "old news are no news");
     ends_by_the_operator(&mut room, "the right force");
 }
+
+#[test]
+fn s_32_of_two_causes_each_must_be_gone_before_the_operator_can_go_on_and_nothing_goes_on_by_itself() {
+    let mut room = Room::dressing();
+    let silent: Fault =
+        |input| (!matches!(&input, Input::Endpoint(sample) if sample.side == Side::Left)).then_some(input);
+    room.step(&Input::Link(LinkEvent::MasterLost));
+    room.beats(BRAKING_BEATS, silent);
+    stands(&mut room, silent);
+    assert!(!room.ask(Command::Continue).is_accepted(), "both stand");
+    room.step(&Input::Link(LinkEvent::MasterBack));
+    stands(&mut room, silent);
+    assert!(!room.ask(Command::Continue).is_accepted(), "one stands");
+    room.beats(50, unaltered);
+    // Ten seconds without a cause, and without an act.
+    for _ in 0..10 {
+        stands(&mut room, unaltered);
+    }
+    assert!(room.ask(Command::Continue).is_accepted());
+}

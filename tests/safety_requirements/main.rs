@@ -18,6 +18,8 @@ mod limits;
 mod numbers;
 mod retries;
 mod room;
+mod sensed;
 mod services;
+mod stopped;
 mod switch;
 mod withdrawal;
