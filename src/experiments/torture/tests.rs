@@ -69,3 +69,9 @@ fn s_13_a_force_that_calls_for_a_stop_is_not_forgotten_for_a_mild_one_that_follo
     // In this trial both came within one beat.
     assert_eq!(torture(2_003_600).violation, None);
 }
+
+#[test]
+fn a_force_under_a_stop_asks_for_no_second_one() {
+    // The robot said for one message that somebody had stopped it, and garbage for a force followed within the same beat.
+    assert_eq!(torture(40_009_922).violation, None);
+}

@@ -143,8 +143,10 @@ impl Witness {
                 arm.heard = Some(now);
                 arm.force = good.then_some(now);
                 // After the end of a trial nothing is commanded any more: a stop would only take the decision from the operator.
-                let moving =
-                    !self.ended && arm.moved.is_some_and(|moved| lived.since(moved) <= Duration::from_millis(50));
+                // Under a stop there is none to ask for.
+                let moving = !self.ended
+                    && self.acts == 3
+                    && arm.moved.is_some_and(|moved| lived.since(moved) <= Duration::from_millis(50));
                 if good && moving && sample.wrench.force.norm() > UNBEARABLE_NEWTONS {
                     self.unbearable_since.get_or_insert(lived);
                 }
