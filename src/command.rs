@@ -17,6 +17,8 @@ pub enum Command {
     Hold,
     /// Go on after a hold.
     Continue,
+    /// The run key is held down: where hold to run is chosen, the arms move as long as this comes at least every 0.3 s.
+    Run,
     /// Give the trial up; the arms hold where they are.
     Abort,
     /// Withdraw the garment along the travelled path, slowly.
@@ -92,7 +94,9 @@ impl Command {
             | Self::Disable
             | Self::Start
             | Self::SelectStrategy(_) => true,
-            Self::Stop
+            // A key that is held needs no question: what it lets go on was asked for and confirmed.
+            Self::Run
+            | Self::Stop
             | Self::Hold
             | Self::Abort
             | Self::FinishAfterThis
@@ -118,6 +122,7 @@ impl fmt::Display for Command {
             Self::Stop => formatter.write_str("emergency stop (software)"),
             Self::Hold => formatter.write_str("hold"),
             Self::Continue => formatter.write_str("continue"),
+            Self::Run => formatter.write_str("run while the key is held"),
             Self::Abort => formatter.write_str("abort the trial"),
             Self::Withdraw => formatter.write_str("withdraw the garment"),
             Self::GoAhead => formatter.write_str("go ahead"),

@@ -19,7 +19,7 @@ pub use health::{
 pub use history::{History, Shared};
 pub use path::{BodyView, EllipseView, PathView, PoseQuality, WaypointRow};
 pub use trial::{
-    Choices, IterationView, MotionNotice, Outcome, RecordingMovement, StepRow, StrategyRow, StrategyView,
+    Choices, IterationView, MotionNotice, Outcome, RecordingMovement, RunKeyView, StepRow, StrategyRow, StrategyView,
     TimelineEvent, TimelineKind, TrialPhase, TrialView,
 };
 

@@ -16,6 +16,7 @@ mod operator;
 mod planner;
 mod protection;
 mod retries;
+mod run_key;
 mod running;
 mod settings;
 mod sign_check;
@@ -94,6 +95,7 @@ pub struct Supervisor {
     contact_since: Option<Stamp>,
     pass_began: Option<Stamp>,
     retries: retries::Retries,
+    run_key: run_key::RunKey,
     last_tick: Option<Stamp>,
     body: Option<BodyPose>,
     questions: planner::Questions,
@@ -130,6 +132,7 @@ impl Supervisor {
             contact_since: None,
             pass_began: None,
             retries: retries::Retries::default(),
+            run_key: run_key::RunKey::default(),
             last_tick: None,
             body: None,
             questions: planner::Questions::default(),
@@ -190,6 +193,7 @@ impl Supervisor {
             self.repeat_stop(now);
             return;
         }
+        self.watch_run_key(now);
         if self.mode == Mode::Running {
             self.give_orders(now);
         }
@@ -234,6 +238,7 @@ impl Supervisor {
     /// What a stop means in here, whoever asked for it.
     fn enter_stop(&mut self, now: Stamp, cause: &str, outcome: Outcome) {
         self.asked = None;
+        self.forget_run_key();
         self.drive.drop_motion();
         self.forget_contact();
         self.protection.end_retreat();
@@ -273,6 +278,7 @@ impl Supervisor {
     /// Brings the arms to a halt and keeps the robot enabled where it is. Without a trial there is nothing to hold.
     fn hold(&mut self, now: Stamp, cause: &str) {
         if self.mode != Mode::Running {
+            self.hold_for_more(now, cause);
             return;
         }
         self.mode = Mode::Held;
@@ -387,9 +393,5 @@ impl Supervisor {
     fn log(&mut self, now: Stamp, level: Level, source: &str, text: String) {
         self.show_log(now, level, source, &text);
         self.effects.push(Effect::Log { level, text });
-    }
-
-    fn both_joints(&self, now: Stamp) -> Option<PerSide<crate::kinematics::JointVector>> {
-        self.drive.joints().or_else(|| self.protection.joints(now))
     }
 }

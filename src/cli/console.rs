@@ -53,6 +53,9 @@ pub(super) struct Arguments {
     /// Begin with the paths that earlier trials of this person learned.
     #[arg(long)]
     warm_start: bool,
+    /// The arms move only as long as the run key is held down, as in the first trial with a person.
+    #[arg(long)]
+    hold_to_run: bool,
     /// Decide everything, command nothing.
     #[arg(long)]
     dry_run: bool,
@@ -160,6 +163,7 @@ fn prepare(arguments: &Arguments) -> Result<Prepared, Failure> {
     choose_planner(&mut setup, arguments.planner.as_deref())?;
     choose_garment(&mut setup, &person, arguments.garment.as_deref())?;
     setup.settings.warm_start |= arguments.warm_start;
+    setup.settings.trial.hold_to_run |= arguments.hold_to_run;
     Ok(Prepared { settings, person, setup, key })
 }
 

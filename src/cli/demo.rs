@@ -68,6 +68,9 @@ pub(super) struct Arguments {
     /// Begin with the paths that earlier trials of this person learned.
     #[arg(long)]
     pub(super) warm_start: bool,
+    /// The arms move only as long as the run key is held down, as in the first trial with a person.
+    #[arg(long)]
+    pub(super) hold_to_run: bool,
     /// The port of the simulator's master; the program sets it for itself when it begins anew.
     #[arg(long, hide = true)]
     pub(super) port: Option<u16>,
@@ -91,6 +94,7 @@ impl Default for Arguments {
             key: KeyArguments::default(),
             screen: ScreenArguments::default(),
             warm_start: false,
+            hold_to_run: false,
             port: None,
         }
     }
@@ -170,6 +174,7 @@ fn person_and_setup(arguments: &Arguments, seed: u64) -> Result<(LoadedProfile, 
     let mut setup = settings.setup_for(&person, seed, Watermark::Demo).map_err(Failure::configuration)?;
     choose_garment(&mut setup, &person, arguments.garment_name.as_deref())?;
     setup.settings.warm_start |= arguments.warm_start;
+    setup.settings.trial.hold_to_run |= arguments.hold_to_run;
     Ok((person, setup, settings))
 }
 

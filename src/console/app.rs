@@ -54,6 +54,7 @@ pub struct App {
     resistances: usize,
     answered: Option<Stamp>,
     asked_setting: Option<AskedSetting>,
+    run_pressed: Option<Stamp>,
 }
 
 /// A value that was asked for and may not be in the snapshot yet: the next key goes on from it.
@@ -76,6 +77,7 @@ impl App {
             resistances: 0,
             answered: None,
             asked_setting: None,
+            run_pressed: None,
         }
     }
 

@@ -4,7 +4,7 @@
 
 use crate::assembly::RobotState;
 use crate::command::{Command, CommandReceipt};
-use crate::snapshot::{Snapshot, TrialPhase};
+use crate::snapshot::{RunKeyView, Snapshot, TrialPhase};
 use crate::time::Stamp;
 use std::time::Duration;
 
@@ -31,14 +31,15 @@ impl ScriptedOperator {
         Self { last_act: None, continues_left: continues, started: false, refusals: 0, gave_up: None }
     }
 
-    /// What the operator does on seeing this, if anything.
+    /// What the operator does on seeing this, if anything. Where hold to run is chosen, the key is held whenever nothing else
+    /// is done.
     pub fn act(&mut self, seen: &Snapshot) -> Option<Command> {
-        if self.last_act.is_some_and(|last| seen.now.since(last) < PAUSE) {
-            return None;
+        let has_paused = self.last_act.is_none_or(|last| seen.now.since(last) >= PAUSE);
+        let command = if has_paused { self.choose(seen) } else { None };
+        if command.is_some() {
+            self.last_act = Some(seen.now);
         }
-        let command = self.choose(seen)?;
-        self.last_act = Some(seen.now);
-        Some(command)
+        command.or_else(|| holds_key(seen).then_some(Command::Run))
     }
 
     /// Why the trial could not be started, once there is no point in asking again.
@@ -55,6 +56,7 @@ impl ScriptedOperator {
         match seen.trial.phase {
             TrialPhase::Idle => self.prepare(seen),
             TrialPhase::Waiting => Some(Command::GoAhead),
+            TrialPhase::Holding if seen.trial.run_key == RunKeyView::Awaited => None,
             TrialPhase::Holding => Some(self.after_hold()),
             _ => None,
         }
@@ -90,6 +92,14 @@ impl ScriptedOperator {
         }
         self.continues_left -= 1;
         Command::Continue
+    }
+}
+
+fn holds_key(seen: &Snapshot) -> bool {
+    match seen.trial.run_key {
+        RunKeyView::NotNeeded => false,
+        RunKeyView::Needed => seen.trial.phase.moves(),
+        RunKeyView::Awaited => !seen.stop.latched,
     }
 }
 
@@ -132,6 +142,22 @@ mod tests {
         let mut operator = ScriptedOperator::new(1);
         assert_eq!(operator.act(&at(1000, TrialPhase::Holding, true)), Some(Command::Continue));
         assert_eq!(operator.act(&at(2000, TrialPhase::Holding, true)), Some(Command::Abort));
+    }
+
+    #[test]
+    fn the_key_of_hold_to_run_is_held_whenever_nothing_else_is_done_and_not_after_a_stop() {
+        let mut operator = ScriptedOperator::new(0);
+        let mut seen = at(1000, TrialPhase::Waiting, true);
+        seen.trial.run_key = RunKeyView::Needed;
+        assert_eq!(operator.act(&seen), Some(Command::GoAhead));
+        assert_eq!(operator.act(&seen), None, "while it waits there is nothing to hold the key for");
+        seen.trial.phase = TrialPhase::Dressing;
+        assert_eq!(operator.act(&seen), Some(Command::Run));
+        (seen.trial.phase, seen.trial.run_key) = (TrialPhase::Holding, RunKeyView::Awaited);
+        seen.now = Stamp::from_nanoseconds(9_000_000_000);
+        assert_eq!(operator.act(&seen), Some(Command::Run), "and no hold is counted");
+        (seen.trial.phase, seen.stop.latched) = (TrialPhase::Stopped, true);
+        assert_eq!(operator.act(&seen), None);
     }
 
     #[test]

@@ -26,11 +26,13 @@ pub struct TrialSettings {
     pub garment_reach_metres: f64,
     /// The least time between two goals, in seconds (thesis section 3.5: 3 s).
     pub goal_interval_seconds: f64,
+    /// Whether the arms move only as long as the operator holds a key down, as in the first trial with a person.
+    pub hold_to_run: bool,
 }
 
 impl Default for TrialSettings {
     fn default() -> Self {
-        Self { first_arm: Side::Right, garment_reach_metres: 0.45, goal_interval_seconds: 3.0 }
+        Self { first_arm: Side::Right, garment_reach_metres: 0.45, goal_interval_seconds: 3.0, hold_to_run: false }
     }
 }
 

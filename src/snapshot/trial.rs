@@ -88,6 +88,19 @@ impl TrialPhase {
     }
 }
 
+/// Hold to run: whether the arms move only as long as the operator holds a key down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunKeyView {
+    /// Not chosen.
+    #[default]
+    NotNeeded,
+    /// Chosen.
+    Needed,
+    /// The trial holds for this key, and for nothing else.
+    Awaited,
+}
+
 /// One step of the thesis' table 3.1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepRow {
@@ -147,6 +160,9 @@ pub struct TrialView {
     pub waiting_for: String,
     /// Why it holds, in words; empty where it does not hold.
     pub hold_cause: String,
+    /// Whether the arms need a key that is held down.
+    #[serde(default)]
+    pub run_key: RunKeyView,
     /// The person's profile: name and hash.
     pub profile: String,
     /// The profile's hash, shortened.

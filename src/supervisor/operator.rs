@@ -27,7 +27,10 @@ impl Supervisor {
             Ok(effective) => CommandReceipt::accepted(command.clone(), effective),
             Err(reason) => CommandReceipt::refused(command.clone(), reason),
         };
-        self.show_receipt(now, origin, &receipt);
+        // A key that is held repeats: only its refusals are worth a line.
+        if !(receipt.is_accepted() && matches!(command, Command::Run)) {
+            self.show_receipt(now, origin, &receipt);
+        }
         self.effects.push(Effect::Receipt(receipt));
     }
 
@@ -39,6 +42,7 @@ impl Supervisor {
             }
             Command::Hold => self.obey_hold(now),
             Command::Continue => self.obey_continue(now),
+            Command::Run => self.obey_run(now),
             Command::Abort => self.obey_abort(now),
             Command::Withdraw => self.obey_withdraw(now),
             Command::GoAhead | Command::NextIteration | Command::NextStep => self.obey_go_ahead(now),
@@ -73,7 +77,11 @@ impl Supervisor {
                 self.hold(now, "the operator");
                 Ok("now".into())
             }
-            Mode::Held => Ok("it holds already".into()),
+            Mode::Held => {
+                // Where it holds for the run key only, that does no longer end it.
+                self.hold(now, "the operator");
+                Ok("it holds already".into())
+            }
             Mode::Idle => Err("no trial runs: nothing moves".into()),
         }
     }
@@ -92,11 +100,17 @@ impl Supervisor {
             self.view.trial.hold_cause.clone_from(&reason);
             return Err(reason);
         }
-        self.protection.watchdogs_mut().acknowledge();
-        self.mode = Mode::Running;
+        self.go_on(now);
         self.log(now, Level::Information, "operator", format!("the trial goes on{}", self.retries.words()));
-        self.show_continue(now);
         Ok("now".into())
+    }
+
+    /// Ends a hold; whether it may end was asked before.
+    pub(super) fn go_on(&mut self, now: Stamp) {
+        self.protection.watchdogs_mut().acknowledge();
+        self.forget_run_key();
+        self.mode = Mode::Running;
+        self.show_continue(now);
     }
 
     fn obey_abort(&mut self, now: Stamp) -> Answer {
@@ -119,11 +133,9 @@ impl Supervisor {
         if !trial.withdraw(place) {
             return Err("the garment is on no arm: continue, or abort".into());
         }
-        self.protection.watchdogs_mut().acknowledge();
+        self.go_on(now);
         self.protection.begin_retreat();
-        self.mode = Mode::Running;
         self.log(now, Level::Information, "operator", "the garment is withdrawn along the travelled path".into());
-        self.show_continue(now);
         Ok("now, slowly".into())
     }
 

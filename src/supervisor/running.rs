@@ -4,7 +4,7 @@ use super::drive::{Arrival, Phase};
 use super::{Effect, Mode, Supervisor};
 use crate::body::{PerSide, Side};
 use crate::geometry::{Point, Vector};
-use crate::kinematics::{MotionRefusal, PairMotion, Scene, Target, plan_pair};
+use crate::kinematics::{JointVector, MotionRefusal, PairMotion, Scene, Target, plan_pair};
 use crate::safety::Reaction;
 use crate::sequencing::{Order, Stage, Trial, TrialEvent};
 use crate::snapshot::{Level, Outcome};
@@ -42,6 +42,11 @@ impl Supervisor {
         let targets = targets.map(|_, place| place.map(Target::position));
         let planned = plan_pair(&self.model, &self.surroundings(), &start, &targets, &limits);
         self.begin(now, planned);
+    }
+
+    /// Where both arms are: where they were told to be, or where the robot says that they are.
+    pub(super) fn both_joints(&self, now: Stamp) -> Option<PerSide<JointVector>> {
+        self.drive.joints().or_else(|| self.protection.joints(now))
     }
 
     /// Starts a motion that was planned, or holds where there is none.

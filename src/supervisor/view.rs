@@ -12,7 +12,7 @@ use crate::safety::StopPhase;
 use crate::sequencing::{Next, Order, Stage, Step, Trial};
 use crate::snapshot::{
     Detection, EllipseView, ForceSample, Freshness, IterationView, Level, LogLine, MotionNotice, Outcome, ReceiptLine,
-    Shared, Snapshot, StepRow, TimelineEvent, TimelineKind, TrialPhase, WaypointRow,
+    RunKeyView, Shared, Snapshot, StepRow, TimelineEvent, TimelineKind, TrialPhase, WaypointRow,
 };
 use crate::strategy::{Contact, IterationSummary, StrategyKind, WaypointChange};
 use crate::time::Stamp;
@@ -43,6 +43,7 @@ impl Supervisor {
         self.view.trial.profile_hash.clone_from(&self.setup.profile_hash);
         self.view.trial.garment.clone_from(&self.setup.garment);
         self.view.trial.seed = self.setup.seed;
+        self.show_run_key();
         self.view.trial.strategy = Some(self.strategy);
         self.view.robot.deadline_seconds = self.protection.watch().robot_state.as_secs_f64();
         let deadline = self.protection.watch().pose.as_secs_f64();
@@ -116,6 +117,15 @@ impl Supervisor {
         cause.clone_into(&mut self.view.trial.hold_cause);
         self.mark(now, None, TimelineKind::Hold);
         self.enter(now, TrialPhase::Holding);
+    }
+
+    /// Shows whether the arms need a held key.
+    pub(super) const fn show_run_key(&mut self) {
+        self.view.trial.run_key = match (self.setup.settings.trial.hold_to_run, self.waits_for_run_key()) {
+            (false, _) => RunKeyView::NotNeeded,
+            (true, false) => RunKeyView::Needed,
+            (true, true) => RunKeyView::Awaited,
+        };
     }
 
     pub(super) fn show_continue(&mut self, now: Stamp) {

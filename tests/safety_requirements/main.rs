@@ -18,6 +18,7 @@ mod limits;
 mod numbers;
 mod retries;
 mod room;
+mod run_key;
 mod sensed;
 mod services;
 mod stopped;

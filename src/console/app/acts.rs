@@ -21,6 +21,9 @@ const SEEK_SECONDS: f64 = 10.0;
 /// within a beat of 10 ms, and what it refused must not count for long.
 const ANSWER_PATIENCE: Duration = Duration::from_millis(300);
 
+/// A terminal repeats a key that is held after half a second or a little more, and then some 30 times a second.
+const REPEAT_DELAY: Duration = Duration::from_millis(1000);
+
 impl App {
     /// Does what an action says, or says why not.
     pub(super) fn act(&mut self, action: Action, snapshot: &Snapshot) -> Vec<Reaction> {
@@ -31,6 +34,7 @@ impl App {
         }
         match action {
             Action::HoldOrContinue => self.hold_or_continue(snapshot),
+            Action::Run => self.hold_run_key(snapshot),
             Action::GoAhead => self.ask(Command::GoAhead, snapshot),
             Action::NextStep => self.ask(Command::NextStep, snapshot),
             Action::PreviousStep => self.ask(Command::PreviousStep, snapshot),
@@ -94,6 +98,16 @@ impl App {
         } else {
             self.send(Command::Hold, snapshot)
         }
+    }
+
+    /// A first press alone moves nothing: only a key that repeats is held.
+    fn hold_run_key(&mut self, snapshot: &Snapshot) -> Vec<Reaction> {
+        let last = self.run_pressed.replace(snapshot.now);
+        if last.is_some_and(|last| snapshot.now.distance(last) <= REPEAT_DELAY) {
+            return vec![Reaction::Send(Command::Run)];
+        }
+        self.inform("hold it down: the arms move only as long as it is held");
+        Vec::new()
     }
 
     fn ask_for_the_word(&mut self) -> Vec<Reaction> {

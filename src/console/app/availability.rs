@@ -3,7 +3,7 @@
 //! Only what the snapshot itself rules out is refused here; everything else is asked of the supervisor, which decides.
 
 use crate::console::keymap::{Action, Guard};
-use crate::snapshot::{Snapshot, StopPhase, TrialPhase, Watermark};
+use crate::snapshot::{RunKeyView, Snapshot, StopPhase, TrialPhase, Watermark};
 
 /// Why an action cannot be done now; `None` where it can be asked for.
 pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option<&'static str> {
@@ -31,6 +31,9 @@ pub(in crate::console) fn refusal(action: Action, snapshot: &Snapshot) -> Option
         Action::Start => needs_enabled(snapshot),
         _ if needs_start && leaves_a_stop(action) && action != Action::Enable => {
             Some("after a stop: enable, then start")
+        }
+        Action::Run if snapshot.trial.run_key == RunKeyView::NotNeeded => {
+            Some("not chosen (trial.hold_to_run, or --hold-to-run)")
         }
         _ if in_a_trial(action) && !phase.is_running() => Some("no trial runs"),
         Action::GoAhead | Action::NextStep | Action::NextIteration if phase != TrialPhase::Waiting => {
@@ -61,6 +64,7 @@ const fn in_a_trial(action: Action) -> bool {
     matches!(
         action,
         Action::HoldOrContinue
+            | Action::Run
             | Action::Withdraw
             | Action::Abort
             | Action::FinishAfterThis
@@ -83,6 +87,7 @@ const fn leaves_a_stop(action: Action) -> bool {
             | Action::NextStep
             | Action::PreviousStep
             | Action::HoldOrContinue
+            | Action::Run
     )
 }
 
@@ -103,6 +108,7 @@ const fn asks_the_robot(action: Action) -> bool {
     matches!(
         action,
         Action::HoldOrContinue
+            | Action::Run
             | Action::GoAhead
             | Action::NextStep
             | Action::PreviousStep

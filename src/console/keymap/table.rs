@@ -143,6 +143,7 @@ actions! {
     StopAndQuit "stop_and_quit" ["ctrl-c"], ALL, Immediate, "",
         "Emergency stop (software), then ask whether to quit; a second time quits";
     HoldOrContinue "hold" ["p"], ALL, Asks, "hold/continue", "Hold at once; when holding, continue (asks first); in a replay: pause or go on";
+    Run "run" ["c"], ALL, None, "run", "Hold to run, where it is chosen: the arms move only as long as this key is held down";
     GoAhead "go_ahead" ["enter"], TRIAL, Asks, "go ahead", "Answer what the trial waits for: names what will move";
     NextStep "next_step" ["n"], TRIAL, Asks, "next step", "Next step of the table";
     PreviousStep "previous_step" ["b"], TRIAL, Asks, "", "Previous step of the table: by withdrawing the garment";

@@ -6,7 +6,7 @@ use crate::console::draw::Scene;
 use crate::console::theme::Role;
 use crate::console::view::Tier;
 use crate::console::widgets::text::{bar, clock, fill, line, span, stale, title, wrap};
-use crate::snapshot::{ForceTier, IterationView, StepRow, TrialPhase};
+use crate::snapshot::{ForceTier, IterationView, RunKeyView, StepRow, TrialPhase};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::Line;
@@ -63,6 +63,10 @@ pub(super) fn now_lines<'a>(scene: &Scene<'a>, width: u16) -> Vec<Line<'a>> {
             let rows = wrap(&format!("{late} {words}: {text}"), width);
             lines.extend(rows.into_iter().map(|row| line(look, Role::Late, row)));
         }
+    }
+    if trial.run_key != RunKeyView::NotNeeded {
+        let key = scene.keys.first_key(crate::console::Action::Run);
+        lines.push(line(look, Role::Late, format!("hold to run: the arms move only as long as {key} is held down")));
     }
     if let Some((strategy, when)) = &trial.strategy_pending {
         lines.push(line(look, Role::Late, format!("strategy {strategy} {when}")));

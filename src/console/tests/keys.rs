@@ -25,6 +25,25 @@ fn keys_that_come_faster_than_the_core_answers_add_up_to_numbers_of_few_digits()
 }
 
 #[test]
+fn the_run_key_is_passed_on_only_while_it_repeats_and_only_where_hold_to_run_is_chosen() {
+    let mut live = fixture(Situation::Live);
+    let mut app = app(Screen::Force);
+    assert_eq!(press(&mut app, &live, &["c", "c", "c"]), []);
+    assert!(app.view.message.as_ref().is_some_and(|message| message.text.contains("--hold-to-run")));
+    live.trial.run_key = crate::snapshot::RunKeyView::Needed;
+    let run = Reaction::Send(Command::Run);
+    assert_eq!(press(&mut app, &live, &["c"]), [], "a single press moves nothing");
+    assert_eq!(press(&mut app, &live, &["c", "c"]), [run.clone(), run]);
+    live.now = live.now + std::time::Duration::from_millis(1500);
+    assert_eq!(press(&mut app, &live, &["c"]), [], "it had been let go");
+    let screen = text_of(&drawn(&live, &self::app(Screen::Trial).view, COLOUR, (120, 40)));
+    assert!(screen.contains("only as long as c is held down"), "{screen}");
+    live.stop.latched = true;
+    live.stop.requested_at = Some(live.now);
+    assert_eq!(press(&mut app, &live, &["c"]), [], "no way round a stop");
+}
+
+#[test]
 fn a_choice_begins_at_what_holds_now() {
     let mut ready = fixture(Situation::Live);
     ready.trial.phase = crate::snapshot::TrialPhase::Idle;
