@@ -9,6 +9,7 @@ mod bones;
 mod chain;
 mod mean;
 mod mode;
+mod sampling;
 
 pub use chain::SegmentLengths;
 
@@ -25,11 +26,8 @@ use crate::time::Stamp;
 use bones::Bones;
 use mode::{ModeFinder, Modes, VotePoint};
 use nalgebra::Matrix3;
+use sampling::Sampling;
 
-/// Every second pixel of every second row is asked for joints: neighbours tell the same.
-const STEP: u16 = 2;
-/// Pixels of the image that each one asked stands for.
-const PIXELS_EACH: usize = (STEP * STEP) as usize;
 /// A pixel whose leaves give a joint's parts less than this share has no say about it.
 const LEAST_SHARE: f32 = 0.15;
 /// Added to a vote's variance in square metres, so that no single leaf outweighs all others.
@@ -82,6 +80,7 @@ pub struct PoseFinder {
     pixels: Vec<Pixel>,
     /// Those of them that are asked.
     asked: Vec<Pixel>,
+    sampling: Sampling,
     classified: Vec<Classified>,
     /// The leaf of each pixel that went through the trees last, for each tree.
     leaves: Vec<Vec<u32>>,
@@ -103,6 +102,7 @@ impl PoseFinder {
             probe: ProbeImage::default(),
             pixels: Vec::new(),
             asked: Vec::new(),
+            sampling: Sampling::default(),
             classified: Vec::new(),
             leaves: Vec::new(),
             votes: Default::default(),
@@ -166,11 +166,12 @@ impl PoseFinder {
         self.camera = view.probe_camera(width, height);
         self.classified.clear();
         self.pixels.clear();
+        self.sampling = Sampling::Quarter;
         for (index, (label, depth)) in labels.iter().zip(image.millimetres()).enumerate() {
             if *depth > 0 && usize::from(*label) < PARTS {
                 let place = if view.facing == Facing::UpperEdge { width * height - 1 - index } else { index };
                 let pixel = foreground::pixel(place % width, place / width, *depth);
-                if is_asked(pixel) {
+                if self.sampling.asks(pixel) {
                     self.classified.push(Classified { pixel, label: *label });
                 }
             }
@@ -180,7 +181,7 @@ impl PoseFinder {
 
     /// Lays an arm into the skin of each side.
     fn lay_bones(&mut self, neck: &Point, known: &PerSide<[Option<Point>; Joint::ALL.len()]>) -> CameraJoints {
-        let counts = bones::counts(&self.classified);
+        let counts = bones::Counts::of(&self.classified, self.sampling);
         let mut joints = CameraJoints::default();
         for side in Side::BOTH {
             let found =
@@ -202,7 +203,7 @@ impl PoseFinder {
     /// wrist, which the thesis leaves out.
     #[must_use]
     pub fn mean_of_part(&self, side: Side, joint: Joint) -> Option<Point> {
-        let found = mean::mean_of_part(&self.classified, &self.camera, side, joint)?;
+        let found = mean::mean_of_part((&self.classified, self.sampling), &self.camera, side, joint)?;
         Some(match self.facing {
             Facing::LowerEdge => found,
             Facing::UpperEdge => Point::new(-found.x, -found.y, found.z),
@@ -211,7 +212,7 @@ impl PoseFinder {
 
     /// The most probable part of each pixel of the last image as it came: labels as in [`super::part`], `NONE` elsewhere.
     ///
-    /// Joints need a quarter of the pixels; the others go through the trees only here.
+    /// Joints need a quarter of the pixels or less; the others go through the trees only here.
     pub fn labels(&mut self, into: &mut Vec<u8>) {
         let (width, height) = (self.probe.width(), self.probe.height());
         into.clear();
@@ -232,7 +233,8 @@ impl PoseFinder {
         self.classified.clear();
         self.votes.iter_mut().for_each(Vec::clear);
         self.asked.clear();
-        self.asked.extend(self.pixels.iter().filter(|pixel| is_asked(**pixel)));
+        self.sampling = Sampling::of(self.pixels.len());
+        self.asked.extend(self.pixels.iter().filter(|pixel| self.sampling.asks(**pixel)));
         walk_all(&self.forest, (&self.probe, camera), &self.asked, &mut self.leaves);
         let mut certain = 0_u64;
         let full = 255 * self.forest.trees().len().max(1);
@@ -259,11 +261,6 @@ impl PoseFinder {
         Joint::ALL
             .map(|joint| votes.get(vote_index(side, joint)).map(|votes| modes.find(votes, neck)).unwrap_or_default())
     }
-}
-
-/// Whether a pixel is one of those that are asked for joints.
-const fn is_asked(pixel: Pixel) -> bool {
-    pixel.column.is_multiple_of(STEP) && pixel.row.is_multiple_of(STEP)
 }
 
 /// Sends pixels through every tree.

@@ -5,7 +5,8 @@
 
 use super::arm::{ArmModel, Expected, LIMBS, Skin};
 use super::chain::SegmentLengths;
-use super::{Classified, LEAST_DEVIATION, PIXELS_EACH};
+use super::sampling::Sampling;
+use super::{Classified, LEAST_DEVIATION};
 use crate::body::{Joint, Side};
 use crate::geometry::{Point, Vector};
 use crate::vision::camera::Intrinsics;
@@ -64,15 +65,23 @@ pub(super) struct Bones {
     unit_areas: Vec<f64>,
 }
 
-/// Pixels of each class, of those that were asked.
-pub(super) fn counts(pixels: &[Classified]) -> [usize; CLASSES] {
-    let mut counts = [0; CLASSES];
-    for found in pixels {
-        if let Some(count) = counts.get_mut(usize::from(found.label)) {
-            *count += 1;
+/// Pixels of each class, of those that were asked, and how many of the image each stands for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counts {
+    of_class: [usize; CLASSES],
+    each: usize,
+}
+
+impl Counts {
+    pub(super) fn of(pixels: &[Classified], sampling: Sampling) -> Self {
+        let mut of_class = [0; CLASSES];
+        for found in pixels {
+            if let Some(count) = of_class.get_mut(usize::from(found.label)) {
+                *count += 1;
+            }
         }
+        Self { of_class, each: sampling.each() }
     }
-    counts
 }
 
 impl Bones {
@@ -81,7 +90,7 @@ impl Bones {
         &mut self,
         side: Side,
         pixels: &[Classified],
-        counts: &[usize; CLASSES],
+        counts: &Counts,
         camera: &Intrinsics,
         (neck, lengths): (&Point, &SegmentLengths),
         known: &[Option<Point>; Joint::ALL.len()],
@@ -113,13 +122,13 @@ impl Bones {
         &mut self,
         side: Side,
         pixels: &[Classified],
-        counts: &[usize; CLASSES],
+        counts: &Counts,
         camera: &Intrinsics,
     ) -> [Option<Point>; LIMBS] {
         self.skin.clear();
         self.unit_areas.clear();
         let first = usize::from(Part::Shoulder.label(side));
-        let of_side = counts.get(first..=first + LIMBS).unwrap_or(&[]);
+        let of_side = counts.of_class.get(first..=first + LIMBS).unwrap_or(&[]);
         let mut left_out = [0; LIMBS + 1];
         let mut sums = [(Vector::zeros(), 0_u32); LIMBS];
         for found in pixels {
@@ -140,11 +149,11 @@ impl Bones {
                 sum.1 += 1;
             }
             self.skin.push(skin(&place, limb));
-            self.unit_areas.push((every * PIXELS_EACH) as f64 / (camera.fx * camera.fy));
+            self.unit_areas.push((every * counts.each) as f64 / (camera.fx * camera.fy));
         }
         let mut middles = [None; LIMBS];
         for ((middle, (sum, count)), pixels) in middles.iter_mut().zip(sums).zip(of_side.iter().skip(1)) {
-            if *pixels * PIXELS_EACH >= LEAST_PIXELS && count > 0 {
+            if *pixels * counts.each >= LEAST_PIXELS && count > 0 {
                 let mean = sum / f64::from(count);
                 *middle = Some(Point::from(mean + mean.normalize() * SKIN_TO_AXIS));
             }

@@ -2,7 +2,8 @@
 //!
 //! It finds the middle of the skin that is seen, not the joint's centre, and knows neither elbow nor wrist. Kept to compare with.
 
-use super::{Classified, PIXELS_EACH};
+use super::Classified;
+use super::sampling::Sampling;
 use crate::body::{Joint, Side};
 use crate::geometry::Point;
 use crate::vision::camera::Intrinsics;
@@ -27,14 +28,19 @@ const fn part_of(joint: Joint) -> Option<Part> {
 }
 
 /// The middle of a part in the camera frame; `None` where it is not seen or the thesis has no such part.
-pub(super) fn mean_of_part(pixels: &[Classified], camera: &Intrinsics, side: Side, joint: Joint) -> Option<Point> {
+pub(super) fn mean_of_part(
+    (pixels, sampling): (&[Classified], Sampling),
+    camera: &Intrinsics,
+    side: Side,
+    joint: Joint,
+) -> Option<Point> {
     let label = part_of(joint)?.label(side);
     let own: Vec<[f64; 3]> = pixels
         .iter()
         .filter(|found| found.label == label)
         .map(|found| [f64::from(found.pixel.column), f64::from(found.pixel.row), f64::from(found.pixel.depth) / 1e3])
         .collect();
-    if own.len() * PIXELS_EACH < LEAST_PIXELS {
+    if own.len() * sampling.each() < LEAST_PIXELS {
         return None;
     }
     let middle = [median(own.iter().map(|[x, ..]| *x))?, median(own.iter().map(|[_, y, _]| *y))?];
@@ -76,15 +82,15 @@ mod tests {
         let label = Part::Hand.label(Side::Left);
         let mut pixels = square(label, (40, 40), 21, 1000);
         pixels.extend(square(label, (300, 300), 5, 2000));
-        let found = mean_of_part(&pixels, &CAMERA, Side::Left, Joint::Hand).unwrap();
+        let found = mean_of_part((&pixels, Sampling::Quarter), &CAMERA, Side::Left, Joint::Hand).unwrap();
         assert!((found - Point::new(0.0, 0.0, 1.0)).norm() < 1e-9, "{found}");
     }
 
     #[test]
     fn a_part_of_few_pixels_and_a_joint_without_a_part_are_not_seen() {
         let pixels = square(Part::Hand.label(Side::Right), (40, 40), 2, 1000);
-        assert_eq!(mean_of_part(&pixels, &CAMERA, Side::Right, Joint::Hand), None);
-        assert_eq!(mean_of_part(&pixels, &CAMERA, Side::Right, Joint::Elbow), None);
-        assert_eq!(mean_of_part(&[], &CAMERA, Side::Left, Joint::Shoulder), None);
+        assert_eq!(mean_of_part((&pixels, Sampling::Quarter), &CAMERA, Side::Right, Joint::Hand), None);
+        assert_eq!(mean_of_part((&pixels, Sampling::Quarter), &CAMERA, Side::Right, Joint::Elbow), None);
+        assert_eq!(mean_of_part((&[], Sampling::Quarter), &CAMERA, Side::Left, Joint::Shoulder), None);
     }
 }

@@ -49,12 +49,12 @@ fn skin_of(ends: &[Point; 4], seen: [bool; LIMBS]) -> Vec<Classified> {
         pixel: foreground::pixel(index % 640, index / 640, (depth * 1000.0).round() as u16),
         label: *label,
     };
-    pixels.map(classified).filter(|found| super::super::is_asked(found.pixel)).collect()
+    pixels.map(classified).filter(|found| Sampling::Quarter.asks(found.pixel)).collect()
 }
 
 fn lay(pixels: &[Classified], known: &[Option<Point>; 6]) -> [Found; 6] {
     let lengths = SegmentLengths::default();
-    Bones::default().lay(Side::Left, pixels, &counts(pixels), &CAMERA, (&NECK, &lengths), known)
+    Bones::default().lay(Side::Left, pixels, &Counts::of(pixels, Sampling::Quarter), &CAMERA, (&NECK, &lengths), known)
 }
 
 fn true_place(ends: &[Point; 4], joint: Joint) -> Point {
@@ -94,7 +94,7 @@ fn without_any_skin_nothing_is_seen_and_every_number_is_finite() {
         assert!(!found.is_seen());
         assert!(found.place.iter().all(|value| value.is_finite()));
     }
-    assert_eq!(counts(&[]), [0; PARTS + 1]);
+    assert_eq!(Counts::of(&[], Sampling::Quarter).of_class, [0; PARTS + 1]);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn the_same_finder_finds_the_same_a_second_time() {
     let (pixels, lengths, mut bones) = (skin_of(&ends(), [true; LIMBS]), SegmentLengths::default(), Bones::default());
     let mut once = || {
         bones
-            .lay(Side::Left, &pixels, &counts(&pixels), &CAMERA, (&NECK, &lengths), &[None; 6])
+            .lay(Side::Left, &pixels, &Counts::of(&pixels, Sampling::Quarter), &CAMERA, (&NECK, &lengths), &[None; 6])
             .map(|found| found.place)
     };
     assert_eq!(once(), once());
