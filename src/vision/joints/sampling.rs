@@ -39,9 +39,9 @@ impl Sampling {
     pub(super) const fn asks(self, pixel: Pixel) -> bool {
         let (column, row) = (pixel.column, pixel.row);
         match self {
-            Self::Quarter => (column | row) & 1 == 0,
-            Self::Eighth => (column | row) & 1 == 0 && (column ^ row) & 2 == 0,
-            Self::Sixteenth => (column | row) & 3 == 0,
+            Self::Quarter => column.is_multiple_of(2) && row.is_multiple_of(2),
+            Self::Eighth => Self::Quarter.asks(pixel) && (column ^ row) & 2 == 0,
+            Self::Sixteenth => column.is_multiple_of(4) && row.is_multiple_of(4),
         }
     }
 }
