@@ -23,6 +23,7 @@ mod keys;
 mod label;
 mod log;
 mod profile;
+mod recorded_pose;
 mod recording;
 mod replay;
 mod report;

@@ -7,6 +7,7 @@ use super::exit::Failure;
 use super::key::KeyArguments;
 use super::output::Output;
 use super::planning::choose_planner;
+use super::recorded_pose::RecordedPose;
 use super::recording::{RecordArguments, sealed};
 use super::screen::ScreenArguments;
 use super::session::{Opening, Session};
@@ -14,6 +15,7 @@ use super::sim::ros_failure;
 use crate::command::Origin;
 use crate::config::{Key, LoadedProfile, Places, Settings};
 use crate::console::{ConsoleOptions, ExitReason, Reload};
+use crate::record::JournalFile;
 use crate::ros::Node;
 use crate::snapshot::{Snapshot, Watermark};
 use crate::strategy::StrategyKind;
@@ -56,6 +58,9 @@ pub(super) struct Arguments {
     /// The arms move only as long as the run key is held down, as in the first trial with a person.
     #[arg(long)]
     hold_to_run: bool,
+    /// Take the person's pose from this recorded trial, at its pace, instead of a camera or a tracker.
+    #[arg(long, value_name = "TRIAL")]
+    pose_from: Option<PathBuf>,
     /// Decide everything, command nothing.
     #[arg(long)]
     dry_run: bool,
@@ -76,6 +81,7 @@ struct Prepared {
     settings: Settings,
     person: LoadedProfile,
     setup: Setup,
+    pose: Option<RecordedPose>,
     key: Option<Key>,
 }
 
@@ -96,10 +102,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn operate(arguments: &Arguments, node: Node, prepared: Prepared) -> Result<(), Failure> {
-    let Prepared { settings, person, setup, key } = prepared;
+    let Prepared { settings, person, setup, pose, key } = prepared;
     let strategy = setup.settings.strategy;
     let recording = arguments.record.of_trials(&Places::of_this_machine().trials, settings.recording());
-    let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: arguments.dry_run })?;
+    let is_dry_run = arguments.dry_run;
+    let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run, pose })?;
     let chosen = Chosen::default();
     let reason = if arguments.headless {
         lines::follow(&session, strategy, arguments.seed(), arguments.json).map(|()| ExitReason::Quit)
@@ -164,7 +171,9 @@ fn prepare(arguments: &Arguments) -> Result<Prepared, Failure> {
     choose_garment(&mut setup, &person, arguments.garment.as_deref())?;
     setup.settings.warm_start |= arguments.warm_start;
     setup.settings.trial.hold_to_run |= arguments.hold_to_run;
-    Ok(Prepared { settings, person, setup, key })
+    let pose = arguments.pose_from.as_ref().map(|path| RecordedPose::read(JournalFile::new(path, key.clone())));
+    let pose = pose.transpose()?;
+    Ok(Prepared { settings, person, setup, pose, key })
 }
 
 /// Puts the strategy that was asked for into a setup.

@@ -6,6 +6,7 @@ use super::exit::Failure;
 use super::eyes::{Eyes, Sight};
 use super::log::{self, ProgramLog};
 use super::planning::PlannerThread;
+use super::recorded_pose::{RecordedPose, Telling};
 use super::recording::Recording;
 use super::sim::ros_failure;
 use crate::assembly::SwitchRequest;
@@ -41,6 +42,8 @@ pub(super) struct Opening<'a> {
     /// Where the journal goes; `None` where the operator refused one.
     pub(super) recording: Option<Recording>,
     pub(super) is_dry_run: bool,
+    /// A recording that the person's pose comes from instead of a camera or a tracker.
+    pub(super) pose: Option<RecordedPose>,
 }
 
 /// A node at work. Dropping it stops the supervisor and leaves the graph.
@@ -50,6 +53,7 @@ pub(super) struct Session {
     shell: ShellView,
     recorder: Option<Arc<Recorder>>,
     eyes: Option<Eyes>,
+    recorded_pose: Option<Telling>,
     node: Node,
     log: ProgramLog,
 }
@@ -70,7 +74,7 @@ struct ShellView {
     link: Arc<RobotLink>,
     recorder: Option<Arc<Recorder>>,
     master: String,
-    pose_source: &'static str,
+    pose_source: String,
     choices: Choices,
 }
 
@@ -159,7 +163,7 @@ impl Session {
         let recorder = opening.recording.as_ref();
         let recorder = recorder.map(|place| place.start(&opening.setup, opening.person, told)).transpose()?;
         let recorder = recorder.map(Arc::new);
-        let sight = Sight::of(opening.person)?;
+        let sight = if opening.pose.is_some() { None } else { Sight::of(opening.person)? };
         let is_planned_outside = opening.setup.settings.planner == PlannerKind::MoveIt;
         let supervisor = Supervisor::new(opening.setup, model.clone()).map_err(Failure::configuration)?;
         let node = opening.node;
@@ -188,8 +192,13 @@ impl Session {
             link.watch_depth(depth_recorder(Arc::downgrade(recorder)));
         }
         let link = Arc::new(link);
-        let pose_source = if sight.is_some() { "depth camera" } else { "skeleton tracker" };
-        let eyes = sight.map(|sight| Eyes::open(sight, Arc::clone(&link), seen)).transpose().map_err(Failure::fault)?;
+        let pose_source = match (&opening.pose, &sight) {
+            (Some(recorded), _) => recorded.source(),
+            (None, Some(_)) => "depth camera".to_owned(),
+            (None, None) => "skeleton tracker".to_owned(),
+        };
+        let eyes = sight.map(|sight| Eyes::open(sight, Arc::clone(&link), seen.clone())).transpose();
+        let eyes = eyes.map_err(Failure::fault)?;
         let garments = opening.person.profile.garments.iter().map(|garment| garment.name.clone()).collect();
         let profiles = profile_names(&Places::of_this_machine());
         let choices = Choices { profiles, garments, ..Choices::default() };
@@ -207,7 +216,12 @@ impl Session {
         // Nobody else sets it: this cannot fail.
         let _ = inbox.set(engine.inbox());
         engine.inbox().offer(Input::Link(LinkEvent::MasterBack));
-        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, eyes, node, log })
+        let recorded_pose = opening.pose.map(|recorded| {
+            shell.link.ignore_tracker();
+            recorded.tell(seen)
+        });
+        let recorded_pose = recorded_pose.transpose().map_err(Failure::fault)?;
+        Ok(Self { engine: Some(engine), stop: Some(stop), shell, recorder, eyes, recorded_pose, node, log })
     }
 
     /// The stop, for keys and panics: sets the latch, never blocks.
@@ -278,6 +292,7 @@ impl Session {
         drop(self.engine.take());
         drop(self.stop.take());
         drop(self.eyes.take());
+        drop(self.recorded_pose.take());
         let Self { shell: ShellView { link, recorder: shared, .. }, recorder, node, log, .. } = self;
         // The recorder is finished by its last owner.
         drop(shared);

@@ -30,7 +30,7 @@ impl Supervisor {
                 self.log(now, Level::Error, "link", text);
             }
             LinkEvent::CannotSee { reason } => {
-                self.log(now, Level::Warning, "pose", format!("the depth camera gives no pose: {reason}"));
+                self.log(now, Level::Warning, "pose", format!("no pose of the person: {reason}"));
             }
             LinkEvent::WorkerLost { name } => {
                 self.stop(now, &format!("the part of valet called {name} died"), Outcome::Fault);

@@ -10,6 +10,7 @@ mod chain;
 mod mean;
 mod mode;
 mod sampling;
+mod trust;
 
 pub use chain::SegmentLengths;
 
@@ -24,7 +25,7 @@ use crate::body::{ArmPose, BodyPose, Evidence, Joint, JointEstimate, PerSide, Si
 use crate::geometry::{Point, Pose, Vector};
 use crate::time::Stamp;
 use bones::Bones;
-use mode::{ModeFinder, Modes, VotePoint};
+use mode::{Mode, ModeFinder, Modes, VotePoint};
 use nalgebra::Matrix3;
 use sampling::Sampling;
 
@@ -145,8 +146,7 @@ impl PoseFinder {
         self.classify(&camera);
         let candidates = PerSide::from_fn(|side| self.candidates(side, &neck));
         let chosen = chain::choose(&candidates, &neck, &self.lengths);
-        let known = chosen.map(|_, modes| modes.map(|mode| mode.map(|mode| mode.place)));
-        Ok(self.lay_bones(&neck, &known))
+        Ok(self.lay_bones(&neck, &chosen))
     }
 
     /// Finds the joints from labels that are known (as in [`super::part`], a label a pixel of the image) instead of a forest's:
@@ -180,7 +180,7 @@ impl PoseFinder {
     }
 
     /// Lays an arm into the skin of each side.
-    fn lay_bones(&mut self, neck: &Point, known: &PerSide<[Option<Point>; Joint::ALL.len()]>) -> CameraJoints {
+    fn lay_bones(&mut self, neck: &Point, known: &PerSide<[Option<Mode>; Joint::ALL.len()]>) -> CameraJoints {
         let counts = bones::Counts::of(&self.classified, self.sampling);
         let mut joints = CameraJoints::default();
         for side in Side::BOTH {

@@ -96,7 +96,7 @@ fn supervise(arguments: &Arguments, simulator: Simulator) -> Result<(), Failure>
     let strategy = setup.settings.strategy;
     let node = Node::start("valet").map_err(ros_failure)?;
     let recording = arguments.record.of_demos(&Places::of_this_machine().demos, settings.recording());
-    let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: false })?;
+    let session = Session::open(Opening { node, setup, person: &person, recording, is_dry_run: false, pose: None })?;
     if arguments.headless {
         let result = follow(arguments, &session, strategy.name());
         if let Some(path) = recorded_in(session, &person, arguments)? {

@@ -5,7 +5,9 @@
 
 use super::arm::{ArmModel, Expected, LIMBS, Skin};
 use super::chain::SegmentLengths;
+use super::mode::Mode;
 use super::sampling::Sampling;
+use super::trust;
 use super::{Classified, LEAST_DEVIATION};
 use crate::body::{Joint, Side};
 use crate::geometry::{Point, Vector};
@@ -29,8 +31,6 @@ const OFF_THE_LIMB: f64 = 0.04;
 const LEAST_AREA: f64 = 2.5e-4;
 /// A joint whose place is known less well than this is not seen, in metres.
 const MOST_DEVIATION: f64 = 0.06;
-/// A place further than this from where votes have it is made up by wrong labels, in metres.
-const FAR_FROM_VOTES: f64 = 0.10;
 /// In [`Skin::limb`]: the shoulder's, which the fit leaves alone, for breast and back belong to it as well.
 const TORSO: u8 = 3;
 const _: () = assert!(TORSO as usize == LIMBS);
@@ -93,25 +93,27 @@ impl Bones {
         counts: &Counts,
         camera: &Intrinsics,
         (neck, lengths): (&Point, &SegmentLengths),
-        known: &[Option<Point>; Joint::ALL.len()],
+        known: &[Option<Mode>; Joint::ALL.len()],
     ) -> [Found; Joint::ALL.len()] {
         let middles = self.gather(side, pixels, counts, camera);
         let (across, down) = SHOULDER_PLACE;
         let outwards = if side == Side::Left { across } else { -across };
         let voted = [Joint::Shoulder, Joint::Elbow, Joint::Wrist, Joint::Hand]
-            .map(|joint| known.get(joint.index()).copied().flatten());
+            .map(|joint| known.get(joint.index()).copied().flatten().map(|mode| mode.place));
         let expected = Expected { shoulder: neck + Vector::new(outwards, 0.0, down), lengths, voted };
         let mut arm = ArmModel::begin(&middles, &expected);
         for (end, voted) in arm.ends.iter_mut().zip(voted) {
             *end = voted.unwrap_or(*end);
         }
         let covariances = arm.fit(&self.skin, &expected);
-        // Where a forest has labelled, a joint that its votes leave out is one that the labels make up.
-        let is_forests = voted.iter().any(Option::is_some);
         let mut found = Joint::ALL.map(|joint| self.found(joint, &arm, &covariances));
-        for (found, known) in found.iter_mut().zip(known) {
-            if is_forests && known.is_none_or(|known| (known - found.place).norm() > FAR_FROM_VOTES) {
-                found.area = 0.0;
+        // Where a forest has labelled, a joint that its votes leave out is one that the labels make up.
+        if voted.iter().any(Option::is_some) {
+            for ((joint, found), known) in Joint::ALL.into_iter().zip(&mut found).zip(known) {
+                match trust::agreed(joint, found, known.as_ref()) {
+                    Some(place) => found.place = place,
+                    None => found.area = 0.0,
+                }
             }
         }
         found

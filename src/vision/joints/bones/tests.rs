@@ -52,7 +52,7 @@ fn skin_of(ends: &[Point; 4], seen: [bool; LIMBS]) -> Vec<Classified> {
     pixels.map(classified).filter(|found| Sampling::Quarter.asks(found.pixel)).collect()
 }
 
-fn lay(pixels: &[Classified], known: &[Option<Point>; 6]) -> [Found; 6] {
+fn lay(pixels: &[Classified], known: &[Option<Mode>; 6]) -> [Found; 6] {
     let lengths = SegmentLengths::default();
     Bones::default().lay(Side::Left, pixels, &Counts::of(pixels, Sampling::Quarter), &CAMERA, (&NECK, &lengths), known)
 }
@@ -100,7 +100,7 @@ fn without_any_skin_nothing_is_seen_and_every_number_is_finite() {
 #[test]
 fn a_place_that_labels_draw_far_away_from_the_votes_is_not_seen() {
     let ends = ends();
-    let mut known = Joint::ALL.map(|joint| Some(true_place(&ends, joint)));
+    let mut known = Joint::ALL.map(|joint| Some(Mode { place: true_place(&ends, joint), share: 1.0 }));
     let pixels = skin_of(&ends, [true; LIMBS]);
     assert!(lay(&pixels, &known).iter().all(Found::is_seen));
     known[Joint::Hand.index()] = None;
