@@ -15,6 +15,9 @@ mod version;
 pub use error::ConfigError;
 pub use layers::layered;
 pub use places::{Places, profile_names};
-pub use profile::{CameraPlace, CameraSetup, Consent, Garment, LearnedPath, LoadedProfile, Profile};
+pub use profile::{
+    ArmClothes, CameraPlace, CameraSetup, Clothes, Consent, Garment, LearnedPath, LoadedProfile, Profile, clothes_of,
+    sample_colours,
+};
 pub use secret::{Key, SecretError, read_secret, write_whole};
 pub use settings::{RecordingSettings, Settings};

@@ -5,7 +5,9 @@
 
 use super::exit::Failure;
 use super::images::{ImageNotes, pictures_in, read_colour, read_depth, write_labels};
+use super::key::KeyArguments;
 use super::output::{Output, complain};
+use crate::config::{Clothes, LoadedProfile, Places, clothes_of, sample_colours};
 use crate::vision::labels::{ColourImage, SampleColours};
 use crate::vision::part::{NONE, PARTS};
 use crate::vision::probe::ProbeImage;
@@ -22,8 +24,13 @@ pub(super) struct Arguments {
     images: PathBuf,
     /// TOML file with the colour of each part: `[left]` and `[right]` with `shoulder`, `upper_arm`, `forearm` and `hand`, each
     /// `[red, green, blue]` from 0 to 255, or `{ image = "NAME.png", column = 320, row = 240 }` to pick it from colour/NAME.png.
-    #[arg(long, value_name = "FILE")]
-    samples: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "profile")]
+    samples: Option<PathBuf>,
+    /// The person whose profile holds the colours (`[clothes.left]`, `[clothes.right]`): a name or a file.
+    #[arg(long, conflicts_with = "samples")]
+    profile: Option<String>,
+    #[command(flatten)]
+    key: KeyArguments,
     /// Folder for the label images (8-bit, 255 is no part); without it truth/ in the folder of the images.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -66,7 +73,7 @@ struct Labelled<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let colours = samples_in(&arguments.samples, &arguments.images).map_err(Failure::Configuration)?;
+    let colours = colours_of(arguments)?;
     let pictures = pictures_in(&arguments.images)?;
     if pictures.is_empty() {
         return Err(Failure::Configuration(format!("{}: holds no NAME.png", arguments.images.display())));
@@ -88,6 +95,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let done = pictures.len() - failed;
     output.line(format!("{done} images labelled, {failed} unusable. Written: {}", out.display()))?;
+    if arguments.profile.is_none() {
+        output.line(format!("The same colours for the person's profile:\n\n{}", in_profile(&colours)?))?;
+    }
     if failed > 0 {
         return Err(Failure::Configuration(format!("{failed} of {} images could not be used", pictures.len())));
     }
@@ -125,6 +135,32 @@ fn label(picture: &Path, out: &Path, colours: &SampleColours) -> Result<[usize; 
 fn beside(picture: &Path, folder: &str) -> PathBuf {
     let name = picture.file_name().unwrap_or_default();
     picture.parent().unwrap_or_else(|| Path::new(".")).join(folder).join(name)
+}
+
+/// The sample colours that are asked for: a profile's, or those of a file.
+fn colours_of(arguments: &Arguments) -> Result<SampleColours, Failure> {
+    if let Some(file) = &arguments.samples {
+        return samples_in(file, &arguments.images).map_err(Failure::Configuration);
+    }
+    let name = arguments.profile.as_deref().unwrap_or_default();
+    let key = arguments.key.given()?;
+    let person = LoadedProfile::find_with(name, &Places::of_this_machine(), key.as_ref());
+    let person = person.map_err(Failure::configuration)?;
+    person.profile.clothes.as_ref().map(sample_colours).ok_or_else(|| {
+        let file = person.path.display();
+        Failure::Configuration(format!(
+            "{file}: holds no colours of clothes ([clothes.left], [clothes.right]): label once with --samples, which prints them"
+        ))
+    })
+}
+
+/// The colours as a profile says them.
+fn in_profile(colours: &SampleColours) -> Result<String, Failure> {
+    #[derive(Serialize)]
+    struct Part {
+        clothes: Clothes,
+    }
+    toml::to_string(&Part { clothes: clothes_of(colours) }).map_err(Failure::fault)
 }
 
 /// The sample colours of a file, checked; those to be picked are picked from the colour images of a folder.

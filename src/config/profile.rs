@@ -5,10 +5,12 @@
 
 mod camera;
 mod check;
+mod clothes;
 mod learn;
 mod load;
 
 pub use camera::{CameraPlace, CameraSetup};
+pub use clothes::{ArmClothes, Clothes, clothes_of, sample_colours};
 pub use load::LoadedProfile;
 
 use crate::body::Side;
@@ -45,6 +47,9 @@ pub struct Profile {
     /// The depth camera, where the person's pose is to come from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraSetup>,
+    /// The colours that the person wears while images are taken to train from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clothes: Option<Clothes>,
     /// Garments by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub garments: Vec<Garment>,

@@ -10,7 +10,7 @@ use super::probe::{PLANES, Plane, ProbeImage};
 use super::tree::{LEAF, Tree};
 
 /// Pixels that walk side by side without vector instructions.
-const SIDE_BY_SIDE: usize = 8;
+const SIDE_BY_SIDE: usize = 16;
 
 /// The number of the leaf that each pixel ends in. `ratio` is the camera's focal length over the model's.
 pub fn leaves(tree: &Tree, image: &ProbeImage, pixels: &[Pixel], ratio: f32, into: &mut Vec<u32>) {

@@ -43,7 +43,8 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn arguments(folder: &Path) -> Arguments {
-    Arguments { images: folder.to_owned(), samples: folder.join("samples.toml"), out: None, json: true }
+    let samples = Some(folder.join("samples.toml"));
+    Arguments { images: folder.to_owned(), samples, profile: None, key: KeyArguments::default(), out: None, json: true }
 }
 
 #[test]
@@ -87,4 +88,24 @@ fn what_is_missing_broken_or_alike_is_named_with_its_file() {
     assert!(label(&at("c.png"), &at("truth/c.png"), &colours).unwrap_err().contains("colour/c.png"));
     std::fs::copy(at("a.png"), at("colour/c.png")).unwrap();
     assert!(label(&at("c.png"), &at("truth/c.png"), &colours).unwrap_err().contains("8 bits"));
+}
+
+#[test]
+fn colours_of_a_profile_label_as_those_of_a_file_do_and_a_profile_without_any_says_what_to_do() {
+    let folder = folder();
+    run(&arguments(folder.path())).unwrap();
+    let from_file = std::fs::read(folder.path().join("truth/a.png")).unwrap();
+    let colours = in_profile(&SampleColours(COLOURS)).unwrap();
+    let profile = folder.path().join("p-01.toml");
+    let of_profile = |path: &Path| Arguments {
+        samples: None,
+        profile: Some(path.to_string_lossy().into_owned()),
+        ..arguments(folder.path())
+    };
+    std::fs::write(&profile, "version = 1\npseudonym = \"p-01\"\n").unwrap();
+    let words = run(&of_profile(&profile)).unwrap_err().to_string();
+    assert!(words.contains("p-01.toml") && words.contains("--samples"), "{words}");
+    std::fs::write(&profile, format!("version = 1\npseudonym = \"p-01\"\n{colours}")).unwrap();
+    run(&of_profile(&profile)).unwrap();
+    assert_eq!(std::fs::read(folder.path().join("truth/a.png")).unwrap(), from_file);
 }

@@ -36,6 +36,9 @@ pub(super) fn check(profile: &Profile) -> Result<(), (String, String)> {
     if let Some(camera) = &profile.camera {
         camera.check()?;
     }
+    if let Some(clothes) = &profile.clothes {
+        super::clothes::check(clothes)?;
+    }
     garments(profile)?;
     learned(profile)
 }

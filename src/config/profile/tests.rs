@@ -52,6 +52,21 @@ fn learned(waypoints: &str) -> String {
     )
 }
 
+/// A profile with the colours of clothes, the left shoulder's to be chosen.
+fn clothed(shoulder: &str) -> String {
+    format!(
+        "version = 1\npseudonym = \"p-01\"\n[clothes.left]\nshoulder = {shoulder}\nupper_arm = [30, 200, 30]\n\
+         forearm = [30, 30, 220]\nhand = [220, 220, 30]\n[clothes.right]\nshoulder = [220, 30, 220]\n\
+         upper_arm = [30, 220, 220]\nforearm = [240, 240, 240]\nhand = [90, 60, 20]\n"
+    )
+}
+
+#[test]
+fn clothes_that_can_be_told_apart_are_read() {
+    let clothes = parse(&clothed("[220, 30, 30]")).unwrap().profile.clothes.unwrap();
+    assert_eq!(super::sample_colours(&clothes).0[0], [220, 30, 30]);
+}
+
 #[test]
 fn mistakes_are_named_with_file_and_key() {
     let cases = [
@@ -64,6 +79,8 @@ fn mistakes_are_named_with_file_and_key() {
         ("version = 1\npseudonym = \"p-01\"\n[consent]\nversion = \"\"\ndate = \"2026-11-22\"", "consent.version"),
         ("version = 1\npseudonym = \"p-01\"\n[simulated.body]\nstature_metres = 17.5", "stature_metres"),
         ("version = 1\npseudonym = \"p-01\"\n[[garments]]\nname = \"\"", "garments[0].name"),
+        (&clothed("[220, 30, 300]"), "shoulder"),
+        (&clothed("[30, 200, 31]"), "clothes"),
         (&learned("[]"), "learned[0].waypoints"),
         (&learned("[[0, 0.0, [0, 0, 0]], [1, 9.0, [0, 0, 0]]]"), "learned[0].waypoints[1]"),
         (&learned("[[0, 0.0, [0, 0, 0]], [0, 0.0, [0, 0, 0]], [1, 1.0, [0, 0, 0]]]"), "learned[0].waypoints[1]"),
